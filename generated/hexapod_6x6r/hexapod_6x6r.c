@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1182,6 +1193,8 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -1200,6 +1213,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1822,8 +1836,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1893,16 +1907,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1934,7 +1947,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1991,8 +2004,8 @@ typedef struct {
         six_r_zeta_5_in_axes5_y, six_r_bias_t_19, six_r_bias_t_20, six_r_bias_in_axes5_x_2,
         six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2, six_r_nu_2_2,
         six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z, six_r_qdd_1_t_3,
-        six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_Q_xx, six_r_Q_xy,
-        six_r_Q_xz, six_r_Q_yy, six_r_Q_yz, six_r_Q_zz, six_r_M_ta_t_13, six_r_M_ta_t_14,
+        six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_Q_xx, six_r_Q_yy,
+        six_r_Q_zz, six_r_Q_xy, six_r_Q_xz, six_r_Q_yz, six_r_M_ta_t_13, six_r_M_ta_t_14,
         six_r_M_ta_t_15, six_r_M_ta_t_16, six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19,
         six_r_M_ta_t_20, six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3,
         six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_U_x, six_r_U_y, six_r_U_z, six_r_Z_a_t,
@@ -3486,16 +3499,17 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_y +
         six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] -
         six_r_d_alpha_5_in_axes5_zz*m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_c_in_axes5_zz = six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i]
+        - six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
+        six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_z -
+        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i];
     /* (six_r-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy;
     const real six_r_Q_t_2 = R(0.5)*six_r_Q_t;
-    const real six_r_Q_t_3 = six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-        six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-        six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-        six_r_d_Gamma_2_in_axes5_z*v->six_r_w_2_in_axes5_z +
-        six_r_d_alpha_5_in_axes5_xz*m->six_r_h_5_in_spec5_y[i] -
-        six_r_d_alpha_5_in_axes5_yz*m->six_r_h_5_in_spec5_x[i] + six_r_d_c_in_axes5_xx;
+    const real six_r_Q_t_3 = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_zz;
     const real six_r_Q_t_4 = R(0.5)*six_r_Q_t_3;
     const real six_r_Q_t_5 = v->axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy +
         v->axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz - v->axis_y_six_r_axes5_x*six_r_Q_t_2;
@@ -3512,18 +3526,17 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     const real six_r_Q_t_11 = v->axis_y_six_r_axes5_x*six_r_Q_t_5 -
         v->axis_z_six_r_axes5_x*six_r_Q_t_8;
     v->six_r_Q_xx = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_11;
+    const real six_r_Q_t_12 = v->axis_y_six_r_axes5_y*six_r_Q_t_6 -
+        v->axis_z_six_r_axes5_y*six_r_Q_t_9;
+    v->six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
+    v->six_r_Q_zz = -six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy - six_r_d_c_in_axes5_zz -
+        v->six_r_Q_xx - v->six_r_Q_yy;
     v->six_r_Q_xy = v->axis_z_six_r_axes5_x*six_r_Q_t_9 + v->axis_z_six_r_axes5_y*six_r_Q_t_8
         - v->axis_y_six_r_axes5_x*six_r_Q_t_6 - v->axis_y_six_r_axes5_y*six_r_Q_t_5;
     v->six_r_Q_xz = v->axis_z_six_r_axes5_x*six_r_Q_t_10 + v->axis_z_six_r_axes5_z*six_r_Q_t_8
         - v->axis_y_six_r_axes5_x*six_r_Q_t_7 - v->axis_y_six_r_axes5_z*six_r_Q_t_5;
-    const real six_r_Q_t_12 = v->axis_y_six_r_axes5_y*six_r_Q_t_6 -
-        v->axis_z_six_r_axes5_y*six_r_Q_t_9;
-    v->six_r_Q_yy = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_12;
     v->six_r_Q_yz = v->axis_z_six_r_axes5_y*six_r_Q_t_10 + v->axis_z_six_r_axes5_z*six_r_Q_t_9
         - v->axis_y_six_r_axes5_y*six_r_Q_t_7 - v->axis_y_six_r_axes5_z*six_r_Q_t_6;
-    const real six_r_Q_t_13 = v->axis_y_six_r_axes5_z*six_r_Q_t_7 -
-        v->axis_z_six_r_axes5_z*six_r_Q_t_10;
-    v->six_r_Q_zz = -six_r_d_c_in_axes5_xx - 2*six_r_Q_t_13;
     /* (M_ta) coupling block of M */
     const real six_r_M_ta_t = v->axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
         v->axis_y_six_r_axes5_x*six_r_dalpha_c_in_axes5_yx +
@@ -3552,10 +3565,10 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     const real six_r_M_ta_t_9 = v->axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
         v->axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
         v->axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_10 = -v->six_r_Q_xy*v->six_r_q_z;
+    const real six_r_M_ta_t_10 = v->six_r_Q_xy*v->six_r_q_z;
     const real six_r_M_ta_t_11 = v->six_r_Q_xz*v->six_r_q_y;
     const real six_r_M_ta_t_12 = v->six_r_Q_yz*v->six_r_q_x;
-    v->six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
+    v->six_r_M_ta_t_13 = six_r_M_ta_t_11 - six_r_M_ta_t_10 -
         v->axis_x_six_r_axes5_x*six_r_M_ta_t - v->axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
         v->axis_z_six_r_axes5_x*six_r_M_ta_t_7;
     v->six_r_M_ta_t_14 = v->six_r_Q_xx*v->six_r_q_z - v->six_r_Q_xz*v->six_r_q_x -
@@ -3567,8 +3580,8 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     v->six_r_M_ta_t_16 = v->six_r_Q_yz*v->six_r_q_y - v->six_r_Q_yy*v->six_r_q_z -
         v->axis_x_six_r_axes5_x*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
         v->axis_z_six_r_axes5_x*six_r_M_ta_t_8;
-    v->six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
-        v->axis_x_six_r_axes5_y*six_r_M_ta_t_2 + v->axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
+    v->six_r_M_ta_t_17 = six_r_M_ta_t_10 - six_r_M_ta_t_12 -
+        v->axis_x_six_r_axes5_y*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_y*six_r_M_ta_t_5 -
         v->axis_z_six_r_axes5_y*six_r_M_ta_t_8;
     v->six_r_M_ta_t_18 = v->six_r_Q_yy*v->six_r_q_x - v->six_r_Q_xy*v->six_r_q_y -
         v->axis_x_six_r_axes5_z*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
@@ -3593,7 +3606,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         v->six_r_M_ta_t_19*v->six_r_q_y - v->six_r_M_ta_t_16*v->six_r_q_z;
     v->six_r_M_aa_t_2 = six_r_d_G_m_xx*v->six_r_q_z - six_r_d_G_m_xz*v->six_r_q_x +
         six_r_dalpha_G_m1_y*v->six_r_n_m1_x + six_r_dalpha_G_m2_y*v->six_r_n_m2_x +
-        v->six_r_M_ta_t_17*v->six_r_q_z + v->six_r_M_ta_t_20*v->six_r_q_y;
+        v->six_r_M_ta_t_20*v->six_r_q_y - v->six_r_M_ta_t_17*v->six_r_q_z;
     v->six_r_M_aa_t_3 = six_r_d_G_m_xy*v->six_r_q_x - six_r_d_G_m_xx*v->six_r_q_y +
         six_r_dalpha_G_m1_z*v->six_r_n_m1_x + six_r_dalpha_G_m2_z*v->six_r_n_m2_x +
         v->six_r_M_ta_t_21*v->six_r_q_y - v->six_r_M_ta_t_18*v->six_r_q_z;
@@ -4518,9 +4531,51 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y;
 }
 
-/* ---- closure_six_r ---- */
-INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[18*w + k] = v->h_star_x;
+    s[19*w + k] = v->h_star_y;
+    s[20*w + k] = v->h_star_z;
+    s[21*w + k] = v->J_star_xx;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void any_place_six_r_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -4535,6 +4590,34 @@ INLINE void closure_six_r_before(const prepared *m, size_t w, size_t k, const re
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- closure_six_r ---- */
 INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *joints, real *o)
 {
@@ -4646,13 +4729,16 @@ INLINE void closure_six_r_place_six_r(size_t w, size_t i, size_t k, size_t at, s
 INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
     *residual_six_r, real *jacobian_six_r, status_flags *t)
 {
-    real s[18] = {0};
-    real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED;
+    real o_six_r[25*LEGS(LEGS_OF_six_r)] CLEARED;
     clear(jacobian_six_r, 150);
     values v;
-    closure_six_r_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
-        closure_six_r_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, X, joints, o_six_r);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
+            closure_six_r_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), s, X, joints,
+                o_six_r);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         closure_six_r_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, residual_six_r, jacobian_six_r);
@@ -4718,31 +4804,6 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -4779,7 +4840,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_yy */
     gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
@@ -4816,19 +4877,6 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
         UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void dynamics_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -4859,19 +4907,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
@@ -4917,9 +4965,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -4948,7 +4996,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
@@ -4956,15 +5004,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
     *M, real *Z, real *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
+    real s[33] CLEARED, sums[27] CLEARED;
+    real terms_six_r[27*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         dynamics_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
-        dynamics_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
+        any_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
@@ -4980,7 +5028,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
@@ -4989,7 +5037,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
             dynamics_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
+            any_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4998,31 +5046,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *joints, real *terms, real *o)
 {
@@ -5043,7 +5066,7 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_t */
+    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_yy */
     gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
@@ -5060,11 +5083,6 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
-}
-
-INLINE void M_place_six_r(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -5097,19 +5115,19 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -5135,9 +5153,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    const real M_ta_yy = sums[10*w + k];
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -5158,22 +5176,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
 APART void M_run(const prepared *m, const real *X, const real *joints, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
+    real s[27] CLEARED, sums[21] CLEARED;
+    real terms_six_r[21*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         M_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
-        M_place_six_r(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
+        any_place_six_r_2(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
@@ -5188,7 +5206,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
@@ -5196,7 +5214,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
             M_legs_six_r(m, LANES, i, k, k, LANES, 1, s, joints, sums, o_six_r);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_six_r(k, k, LANES, o_six_r, t);
+            any_place_six_r_2(k, k, LANES, o_six_r, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -5205,22 +5223,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, re
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -5256,11 +5258,6 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
         UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
-}
-
-INLINE void Z_place_six_r(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -5299,15 +5296,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *joints, real *Z,
     status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         Z_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
-        Z_place_six_r(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
+        any_place_six_r_2(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
@@ -5323,7 +5320,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
     real o_six_r[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -5332,7 +5329,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
             Z_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_six_r(k, k, LANES, o_six_r, t);
+            any_place_six_r_2(k, k, LANES, o_six_r, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -5341,22 +5338,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *joints, real *o)
 {
@@ -5381,30 +5362,17 @@ INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
-INLINE void H_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, const real *joints, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED;
+    real o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         H_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, joints, o_six_r);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
-        H_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
+        any_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
 }
 
@@ -5415,46 +5383,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, re
     real o_six_r[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_six_r(m, LANES, i, k, k, LANES, s, joints, o_six_r);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
+            any_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -5465,9 +5406,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -5497,27 +5435,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -5631,12 +5566,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
     real *joints, real *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
-        required_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints, terms_six_r, o_six_r);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
+            required_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints,
+                terms_six_r, o_six_r);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         required_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
@@ -5655,7 +5593,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -5708,7 +5646,7 @@ INLINE void inverse_kinematics_place_six_r(size_t w, size_t i, size_t k, size_t 
 
 APART void inverse_kinematics_run(const real *joints, real *q, status_flags *t)
 {
-    real o_six_r[6*LEGS(LEGS_OF_six_r)] = {0};
+    real o_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         inverse_kinematics_legs_six_r(1, k, 0, k, LEGS(LEGS_OF_six_r), joints, o_six_r);
     }
@@ -5732,22 +5670,6 @@ INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, s
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *V, const real *joints, real *o)
 {
@@ -5792,10 +5714,10 @@ INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, siz
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
     real *qd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED;
+    real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_rates_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, joints, o_six_r);
     }
@@ -5811,7 +5733,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5824,33 +5746,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *V, const real *A, const real *joints, real *o)
 {
@@ -5899,10 +5794,10 @@ INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED;
+    real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_accelerations_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -5918,7 +5813,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_six_r[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5931,33 +5826,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *V, const real *A, const real *joints, real *o)
 {
@@ -6033,12 +5901,14 @@ INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t cou
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, const real
     *joints, real *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_six_r[13*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED;
+    real o_six_r[13*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
-        legs_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
+            legs_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         legs_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, leg_force, actuator, t);
@@ -6116,10 +5986,6 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     gather(&terms[0*count + k], add, six_r_potential_t_11);  /* potential_of_legs */
 }
 
-INLINE void potential_place_six_r()
-{
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -6133,12 +5999,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 INLINE void potential_run(const prepared *m, const real *X, const real *joints, real *potential,
     status_flags *t)
 {
-    real s[1] = {0}, sums[1] = {0};
-    real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
+    real s[1] CLEARED, sums[1] CLEARED;
+    real terms_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     potential_before(m, 1, 0, X, &v, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
-        potential_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r);
+    for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
+            potential_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), 0, joints,
+                terms_six_r);
+        }
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
@@ -6239,8 +6108,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
     *lengths, real *pivots, real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_six_r[LEGS(LEGS_OF_six_r)] = {0}, o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_six_r[LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[9*LEGS(LEGS_OF_six_r)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -6260,7 +6129,7 @@ APART void condition_run(const prepared *m, const real *X, const real *joints, r
 
 int hexapod_6x6r_M(const prepared *m, const real *X, const real *q0, real *M_out)
 {
-    real joints[NJ] = {0}, M[NV*NV] = {0};
+    real joints[NJ] = {0}, M[NV*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6287,7 +6156,7 @@ INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_ou
 
 int hexapod_6x6r_Z(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out)
 {
-    real joints[NJ] = {0}, Z[NV] = {0};
+    real joints[NJ] = {0}, Z[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6316,7 +6185,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real
 
 int hexapod_6x6r_H(const prepared *m, const real *X, const real *q0, real *H_out)
 {
-    real joints[NJ] = {0}, H[NV*NU] = {0};
+    real joints[NJ] = {0}, H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6343,7 +6212,7 @@ INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_ou
 
 int hexapod_6x6r_inverse_kinematics(const prepared *m, const real *X, const real *q0, real *q_out)
 {
-    real joints[NJ] = {0}, q[NJ] = {0};
+    real joints[NJ] = {0}, q[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6372,7 +6241,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const rea
 int hexapod_6x6r_joint_rates(const prepared *m, const real *X, const real *q0, const real *V, real
     *qd_out)
 {
-    real joints[NJ] = {0}, qd[NJ] = {0};
+    real joints[NJ] = {0}, qd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6402,7 +6271,7 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, 
 int hexapod_6x6r_joint_accelerations(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, real *qdd_out)
 {
-    real joints[NJ] = {0}, qdd[NJ] = {0};
+    real joints[NJ] = {0}, qdd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6433,7 +6302,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, const real *V, real
     *M_out, real *Z_out, real *H_out)
 {
-    real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
+    real joints[NJ] = {0}, M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6646,8 +6515,8 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
-        {0}, work[NV*PADDED(NV)];
+    real joints[NJ] = {0}, required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED,
+        unsure_tau[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6697,8 +6566,8 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
     const real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real joints[NJ] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] =
-        {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real joints[NJ] = {0}, M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0},
+        add_1[NV] CLEARED, subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -6770,9 +6639,9 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real joints[NJ] = {0}, required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, solve_1[NV] =
-        {0}, unsure_solve_1[1] = {0}, leg_force[6*NL] = {0}, actuator[36] = {0}, forces[NL*NL] = {0},
-        work[NV*PADDED(NV)];
+    real joints[NJ] = {0}, required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, solve_1[NV]
+        CLEARED, unsure_solve_1[1] = {0}, leg_force[6*NL] CLEARED, actuator[36] CLEARED, forces[NL*NL]
+        CLEARED, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6799,7 +6668,7 @@ int hexapod_6x6r_leg_reactions(const prepared *m, const real *X, const real *q0,
 int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const real *V, real
     *kinetic_out, real *potential_out)
 {
-    real joints[NJ] = {0}, M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real joints[NJ] = {0}, M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6822,8 +6691,8 @@ int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real joints[NJ] = {0}, H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6855,8 +6724,8 @@ int hexapod_6x6r_manipulability(const prepared *m, const real *X, const real *q0
     *measure_out, real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
+    real joints[NJ] = {0}, H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
         singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
@@ -6890,8 +6759,8 @@ int hexapod_6x6r_singularity_distance(const prepared *m, const real *X, const re
     *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
+    real joints[NJ] = {0}, H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
         singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
@@ -6925,8 +6794,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q0, c
     *q_actuated, real *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
-    real joints[NJ] = {0}, q[NJ] = {0}, q_of_inverse_kinematics_from_1[6] = {0}, subtract_1[NU] = {0},
-        residual[NU] = {0};
+    real joints[NJ] = {0}, q[NJ] CLEARED, q_of_inverse_kinematics_from_1[6] = {0}, subtract_1[NU]
+        CLEARED, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -6945,7 +6814,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q0, c
 
 static int slope_one(const prepared *m, const real *X, const real *q0, real *slope_out)
 {
-    real joints[NJ] = {0}, slope[NV*NU] = {0};
+    real joints[NJ] = {0}, slope[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7020,7 +6889,7 @@ int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, c
     (void)m;
     (void)X;
     (void)q0;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -7034,7 +6903,7 @@ int hexapod_6x6r_dissipation(const prepared *m, const real *X, const real *q0, c
 int hexapod_6x6r_momentum(const prepared *m, const real *X, const real *q0, const real *V, real
     *momentum_out)
 {
-    real joints[NJ] = {0}, M[NV*NV] = {0}, momentum[NV] = {0};
+    real joints[NJ] = {0}, M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -7049,7 +6918,7 @@ int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0,
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
-    real joints[NJ] = {0}, q[NJ] = {0}, margins[NJ] = {0};
+    real joints[NJ] = {0}, q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7065,7 +6934,7 @@ int hexapod_6x6r_joint_margins(const prepared *m, const real *X, const real *q0,
 
 int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0, real *within_out)
 {
-    real joints[NJ] = {0}, q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real joints[NJ] = {0}, q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7080,7 +6949,7 @@ int hexapod_6x6r_within_limits(const prepared *m, const real *X, const real *q0,
 
 int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real *q0, real *q_out)
 {
-    real joints[NJ] = {0}, q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real joints[NJ] = {0}, q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7093,7 +6962,7 @@ int hexapod_6x6r_actuator_positions(const prepared *m, const real *X, const real
 int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0, const real *V,
     real *qd_out)
 {
-    real joints[NJ] = {0}, qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real joints[NJ] = {0}, qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -7106,7 +6975,7 @@ int hexapod_6x6r_actuator_rates(const prepared *m, const real *X, const real *q0
 int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const real *q0, const
     real *V, const real *A, real *qdd_out)
 {
-    real joints[NJ] = {0}, qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real joints[NJ] = {0}, qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -7119,7 +6988,7 @@ int hexapod_6x6r_actuator_accelerations(const prepared *m, const real *X, const 
 int hexapod_6x6r_power(const prepared *m, const real *X, const real *q0, const real *V, const real
     *tau, real *power_out)
 {
-    real joints[NJ] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real joints[NJ] = {0}, H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -7180,7 +7049,7 @@ int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -7196,7 +7065,7 @@ int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved_out)
 
 int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -7212,7 +7081,8 @@ int hexapod_6x6r_difference(const real *X0, const real *X1, real *step_out)
 
 int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -172,7 +172,7 @@ typedef struct {
             six_r_potential_t_3[8], six_r_size[8], six_r_size_t[8];
     hexapod_6x6r_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6x6r_model;
@@ -191,14 +191,14 @@ extern const char *const hexapod_6x6r_ACTUATOR_NAMES[HEXAPOD_6X6R_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model);
 
-/* Inertia matrix M. 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
+/* Inertia matrix M. 7158 mul, 5223 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
    (NQ), q0 (NJ, or NULL). Out: M (NV x NV). */
 int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *M);
 size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *M, int *status);
 
-/* Velocity and gravity terms Z. 5376 mul, 4002 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Velocity and gravity terms Z. 5373 mul, 4002 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: Z (NV). */
 int hexapod_6x6r_Z(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z);
@@ -239,7 +239,7 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 10656 mul, 8121 add, 30 div, 30 sqrt, 60 trig; the
+/* M, Z and H together, sharing the work. 10635 mul, 8133 add, 30 div, 30 sqrt, 60 trig; the
    iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
    NU). */
 int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
@@ -249,7 +249,7 @@ size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, co
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 5631 mul, 4203 add, 30 div, 30 sqrt, 60
+/* Actuator forces tau for the acceleration A, by Eq. 3. 5622 mul, 4197 add, 30 div, 30 sqrt, 60
    trig; the solution of the linear equations apart; the iteration of q apart. In: X (NQ), q0 (NJ,
    or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU). */
 int hexapod_6x6r_inverse_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
@@ -259,7 +259,7 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 10656 mul, 8121 add, 30 div, 30
+/* Acceleration A under the actuator forces tau and the wrench. 10635 mul, 8133 add, 30 div, 30
    sqrt, 60 trig; the solution of the linear equations apart; the iteration of q apart. In: X
    (NQ), q0 (NJ, or NULL), V (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
 int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
@@ -347,7 +347,7 @@ size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n,
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *dissipation, int *status);
 
-/* Generalised momentum M V. 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+/* Generalised momentum M V. 7158 mul, 5223 add, 30 div, 30 sqrt, 60 trig; the iteration of q
    apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: momentum (NV). */
 int hexapod_6x6r_momentum(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *momentum);

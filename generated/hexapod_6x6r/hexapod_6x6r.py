@@ -1022,6 +1022,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -1035,9 +1036,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_six_r,
         (six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xx, six_r_J_2_in_spec2_xy,
@@ -1074,8 +1075,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_six_r,
         (six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xx, six_r_J_2_in_spec2_xy,
@@ -1103,9 +1104,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_six_r,
         (six_r_J_1_in_spec1_xx, six_r_J_2_in_spec2_xy, six_r_J_2_in_spec2_xz,
@@ -2346,7 +2347,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 10656 mul, 8121 add, 30 div, 30 sqrt, 60 trig
+# dynamics: 10635 mul, 8133 add, 30 div, 30 sqrt, 60 trig
 def _run_dynamics(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -2354,8 +2355,8 @@ def _run_dynamics(m, X, V, q):
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_3 = X[3]
     X_4 = X[4]
@@ -2416,13 +2417,12 @@ def _run_dynamics(m, X, V, q):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2439,7 +2439,7 @@ def _run_dynamics(m, X, V, q):
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_yy, M_ta_six_r_yz, M_ta_six_r_zx,
         M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
         M_aa_six_r_yz, M_aa_six_r_zz, Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x,
         Z_a_six_r_y, Z_a_six_r_z,
@@ -4410,6 +4410,15 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x
         )
+        six_r_d_c_in_axes5_zz = (
+        six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x -
+            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
+            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
+            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y
+        )
         # (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
         six_r_G_m1_o_t_3*six_r_w_1_t_46 + six_r_G_m1_o_t_4*six_r_w_1_t_64 +
@@ -4432,15 +4441,7 @@ def _run_dynamics(m, X, V, q):
         # (six_r-Q) inertia of the leg at the connection point, without the mass gathered there
         six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy
         six_r_Q_t_2 = 0.5*six_r_Q_t
-        six_r_Q_t_3 = (
-        six_r_d_c_in_axes5_xx + six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x
-        )
+        six_r_Q_t_3 = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_zz
         six_r_Q_t_4 = 0.5*six_r_Q_t_3
         six_r_Q_t_5 = (
         axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy + axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz -
@@ -4465,6 +4466,12 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 - axis_z_six_r_axes5_x*six_r_Q_t_8
         six_r_Q_xx = -2.0*six_r_Q_t_11 - six_r_d_c_in_axes5_xx
+        six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 - axis_z_six_r_axes5_y*six_r_Q_t_9
+        six_r_Q_yy = -2.0*six_r_Q_t_12 - six_r_d_c_in_axes5_xx
+        six_r_Q_zz = (
+        -six_r_Q_xx - six_r_Q_yy - six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy -
+            six_r_d_c_in_axes5_zz
+        )
         six_r_Q_xy = (
         axis_z_six_r_axes5_x*six_r_Q_t_9 + axis_z_six_r_axes5_y*six_r_Q_t_8 -
             axis_y_six_r_axes5_x*six_r_Q_t_6 - axis_y_six_r_axes5_y*six_r_Q_t_5
@@ -4473,14 +4480,10 @@ def _run_dynamics(m, X, V, q):
         axis_z_six_r_axes5_x*six_r_Q_t_10 + axis_z_six_r_axes5_z*six_r_Q_t_8 -
             axis_y_six_r_axes5_x*six_r_Q_t_7 - axis_y_six_r_axes5_z*six_r_Q_t_5
         )
-        six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 - axis_z_six_r_axes5_y*six_r_Q_t_9
-        six_r_Q_yy = -2.0*six_r_Q_t_12 - six_r_d_c_in_axes5_xx
         six_r_Q_yz = (
         axis_z_six_r_axes5_y*six_r_Q_t_10 + axis_z_six_r_axes5_z*six_r_Q_t_9 -
             axis_y_six_r_axes5_y*six_r_Q_t_7 - axis_y_six_r_axes5_z*six_r_Q_t_6
         )
-        six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 - axis_z_six_r_axes5_z*six_r_Q_t_10
-        six_r_Q_zz = -2.0*six_r_Q_t_13 - six_r_d_c_in_axes5_xx
         # (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation
         six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_end_p1_in_axes5_y
         # (six_r-U) velocity and gravity terms of the leg force
@@ -4542,11 +4545,11 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz
         )
-        six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z
+        six_r_M_ta_t_10 = six_r_Q_xy*six_r_q_z
         six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y
         six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x
         six_r_M_ta_t_13 = (
-        six_r_M_ta_t_10 + six_r_M_ta_t_11 - axis_x_six_r_axes5_x*six_r_M_ta_t -
+        six_r_M_ta_t_11 - six_r_M_ta_t_10 - axis_x_six_r_axes5_x*six_r_M_ta_t -
             axis_y_six_r_axes5_x*six_r_M_ta_t_4 - axis_z_six_r_axes5_x*six_r_M_ta_t_7
         )
         six_r_M_ta_t_14 = (
@@ -4565,8 +4568,8 @@ def _run_dynamics(m, X, V, q):
             six_r_Q_yy*six_r_q_z
         )
         six_r_M_ta_t_17 = (
-        six_r_M_ta_t_10 + six_r_M_ta_t_12 + axis_x_six_r_axes5_y*six_r_M_ta_t_2 +
-            axis_y_six_r_axes5_y*six_r_M_ta_t_5 + axis_z_six_r_axes5_y*six_r_M_ta_t_8
+        six_r_M_ta_t_10 - six_r_M_ta_t_12 - axis_x_six_r_axes5_y*six_r_M_ta_t_2 -
+            axis_y_six_r_axes5_y*six_r_M_ta_t_5 - axis_z_six_r_axes5_y*six_r_M_ta_t_8
         )
         six_r_M_ta_t_18 = (
         six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
@@ -4599,8 +4602,8 @@ def _run_dynamics(m, X, V, q):
             six_r_d_G_m_xy*six_r_q_z
         )
         six_r_M_aa_t_2 = (
-        six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z +
-            six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x -
+        six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_M_ta_t_17*six_r_q_z -
             six_r_d_G_m_xz*six_r_q_x
         )
         six_r_M_aa_t_3 = (
@@ -4664,7 +4667,7 @@ def _run_dynamics(m, X, V, q):
         M_ta_six_r_xy += six_r_M_ta_t_14
         M_ta_six_r_xz += six_r_M_ta_t_15
         M_ta_six_r_yx += six_r_M_ta_t_16
-        M_ta_t += six_r_M_ta_t_17
+        M_ta_yy += six_r_M_ta_t_17
         M_ta_six_r_yz += six_r_M_ta_t_18
         M_ta_six_r_zx += six_r_M_ta_t_19
         M_ta_six_r_zy += six_r_M_ta_t_20
@@ -4737,8 +4740,8 @@ def _run_dynamics(m, X, V, q):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -4768,7 +4771,7 @@ def _run_dynamics(m, X, V, q):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 7179 mul, 5211 add, 30 div, 30 sqrt, 60 trig
+# M: 7158 mul, 5223 add, 30 div, 30 sqrt, 60 trig
 def _run_M(m, X, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -4776,7 +4779,7 @@ def _run_M(m, X, q):
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_3 = X[3]
@@ -4823,16 +4826,15 @@ def _run_M(m, X, q):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
     M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_yy, M_ta_six_r_yz, M_ta_six_r_zx,
         M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
         M_aa_six_r_yz, M_aa_six_r_zz,
     ) = [0.0] * 21
@@ -6079,18 +6081,19 @@ def _run_M(m, X, q):
             six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_x
         )
+        six_r_d_c_in_axes5_zz = (
+        six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x -
+            six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z -
+            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z -
+            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z -
+            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z -
+            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z -
+            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y
+        )
         # (six_r-Q) inertia of the leg at the connection point, without the mass gathered there
         six_r_Q_t = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy
         six_r_Q_t_2 = 0.5*six_r_Q_t
-        six_r_Q_t_3 = (
-        six_r_d_c_in_axes5_xx + six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_d_Gamma_2_in_axes5_z*six_r_w_2_in_axes5_z +
-            six_r_d_Gamma_3_in_axes5_z*six_r_w_3_in_axes5_z +
-            six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_z +
-            six_r_d_Gamma_5_in_axes5_z*six_r_w_5_in_axes5_z +
-            six_r_d_alpha_5_in_axes5_xz*six_r_h_5_in_spec5_y -
-            six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_x
-        )
+        six_r_Q_t_3 = six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_zz
         six_r_Q_t_4 = 0.5*six_r_Q_t_3
         six_r_Q_t_5 = (
         axis_x_six_r_axes5_x*six_r_d_c_in_axes5_xy + axis_z_six_r_axes5_x*six_r_d_c_in_axes5_yz -
@@ -6115,6 +6118,12 @@ def _run_M(m, X, q):
         )
         six_r_Q_t_11 = axis_y_six_r_axes5_x*six_r_Q_t_5 - axis_z_six_r_axes5_x*six_r_Q_t_8
         six_r_Q_xx = -2.0*six_r_Q_t_11 - six_r_d_c_in_axes5_xx
+        six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 - axis_z_six_r_axes5_y*six_r_Q_t_9
+        six_r_Q_yy = -2.0*six_r_Q_t_12 - six_r_d_c_in_axes5_xx
+        six_r_Q_zz = (
+        -six_r_Q_xx - six_r_Q_yy - six_r_d_c_in_axes5_xx - six_r_d_c_in_axes5_yy -
+            six_r_d_c_in_axes5_zz
+        )
         six_r_Q_xy = (
         axis_z_six_r_axes5_x*six_r_Q_t_9 + axis_z_six_r_axes5_y*six_r_Q_t_8 -
             axis_y_six_r_axes5_x*six_r_Q_t_6 - axis_y_six_r_axes5_y*six_r_Q_t_5
@@ -6123,14 +6132,10 @@ def _run_M(m, X, q):
         axis_z_six_r_axes5_x*six_r_Q_t_10 + axis_z_six_r_axes5_z*six_r_Q_t_8 -
             axis_y_six_r_axes5_x*six_r_Q_t_7 - axis_y_six_r_axes5_z*six_r_Q_t_5
         )
-        six_r_Q_t_12 = axis_y_six_r_axes5_y*six_r_Q_t_6 - axis_z_six_r_axes5_y*six_r_Q_t_9
-        six_r_Q_yy = -2.0*six_r_Q_t_12 - six_r_d_c_in_axes5_xx
         six_r_Q_yz = (
         axis_z_six_r_axes5_y*six_r_Q_t_10 + axis_z_six_r_axes5_z*six_r_Q_t_9 -
             axis_y_six_r_axes5_y*six_r_Q_t_7 - axis_y_six_r_axes5_z*six_r_Q_t_6
         )
-        six_r_Q_t_13 = axis_y_six_r_axes5_z*six_r_Q_t_7 - axis_z_six_r_axes5_z*six_r_Q_t_10
-        six_r_Q_zz = -2.0*six_r_Q_t_13 - six_r_d_c_in_axes5_xx
         # (M_ta) coupling block of M
         six_r_M_ta_t = (
         axis_x_six_r_axes5_x*six_r_dalpha_c_in_axes5_xx +
@@ -6177,11 +6182,11 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz
         )
-        six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z
+        six_r_M_ta_t_10 = six_r_Q_xy*six_r_q_z
         six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y
         six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x
         six_r_M_ta_t_13 = (
-        six_r_M_ta_t_10 + six_r_M_ta_t_11 - axis_x_six_r_axes5_x*six_r_M_ta_t -
+        six_r_M_ta_t_11 - six_r_M_ta_t_10 - axis_x_six_r_axes5_x*six_r_M_ta_t -
             axis_y_six_r_axes5_x*six_r_M_ta_t_4 - axis_z_six_r_axes5_x*six_r_M_ta_t_7
         )
         six_r_M_ta_t_14 = (
@@ -6200,8 +6205,8 @@ def _run_M(m, X, q):
             six_r_Q_yy*six_r_q_z
         )
         six_r_M_ta_t_17 = (
-        six_r_M_ta_t_10 + six_r_M_ta_t_12 + axis_x_six_r_axes5_y*six_r_M_ta_t_2 +
-            axis_y_six_r_axes5_y*six_r_M_ta_t_5 + axis_z_six_r_axes5_y*six_r_M_ta_t_8
+        six_r_M_ta_t_10 - six_r_M_ta_t_12 - axis_x_six_r_axes5_y*six_r_M_ta_t_2 -
+            axis_y_six_r_axes5_y*six_r_M_ta_t_5 - axis_z_six_r_axes5_y*six_r_M_ta_t_8
         )
         six_r_M_ta_t_18 = (
         six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
@@ -6234,8 +6239,8 @@ def _run_M(m, X, q):
             six_r_d_G_m_xy*six_r_q_z
         )
         six_r_M_aa_t_2 = (
-        six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z +
-            six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x -
+        six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_M_ta_t_17*six_r_q_z -
             six_r_d_G_m_xz*six_r_q_x
         )
         six_r_M_aa_t_3 = (
@@ -6276,7 +6281,7 @@ def _run_M(m, X, q):
         M_ta_six_r_xy += six_r_M_ta_t_14
         M_ta_six_r_xz += six_r_M_ta_t_15
         M_ta_six_r_yx += six_r_M_ta_t_16
-        M_ta_t += six_r_M_ta_t_17
+        M_ta_yy += six_r_M_ta_t_17
         M_ta_six_r_yz += six_r_M_ta_t_18
         M_ta_six_r_zx += six_r_M_ta_t_19
         M_ta_six_r_zy += six_r_M_ta_t_20
@@ -6325,8 +6330,8 @@ def _run_M(m, X, q):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -M_ta_t
-    out_M[25] = -M_ta_t
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -6348,7 +6353,7 @@ def _run_M(m, X, q):
     return ok, (out_M,)
 
 
-# Z: 5376 mul, 4002 add, 30 div, 30 sqrt, 60 trig
+# Z: 5373 mul, 4002 add, 30 div, 30 sqrt, 60 trig
 def _run_Z(m, X, V, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -6356,8 +6361,8 @@ def _run_Z(m, X, V, q):
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_3 = X[3]
     X_4 = X[4]
@@ -6416,13 +6421,12 @@ def _run_Z(m, X, V, q):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -8076,7 +8080,7 @@ def _run_H(m, X, q):
     return ok, (out_H,)
 
 
-# required: 5631 mul, 4203 add, 30 div, 30 sqrt, 60 trig
+# required: 5622 mul, 4197 add, 30 div, 30 sqrt, 60 trig
 def _run_required(m, X, V, A, q):
     sqrt = m.sqrt
     sin = m.sin
@@ -8170,9 +8174,6 @@ def _run_required(m, X, V, A, q):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -8196,27 +8197,24 @@ def _run_required(m, X, V, A, q):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_six_r_x, R_a_six_r_y, R_a_six_r_z = [0.0] * 6
     for leg, k in legs[0]:
         (

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -832,6 +843,8 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -850,6 +863,7 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1417,8 +1431,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1488,16 +1502,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1529,7 +1542,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1540,21 +1553,21 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 
 typedef struct {
     real crs_q_x, crs_q_y, crs_q_z, crs_h_3_t_7, crs_h_3_t_10, crs_h_3_t_11, crs_e_1_in_axes3_x,
-        crs_h_3_t_13, crs_h_3_in_axes1_x, crs_c_1, crs_s_1, crs_d_4_in_axes1_z, crs_r_1_in_axes1_x,
-        crs_v_1_in_axes3_z, axis_z_crs_axes3_x, axis_z_crs_axes3_y, axis_z_crs_axes3_z,
+        crs_h_3_t_13, crs_h_3_in_axes1_x, crs_c_1, crs_s_1, crs_r_1_in_axes1_x, crs_v_1_in_axes3_z,
+        crs_v_3_in_axes1_x, axis_z_crs_axes3_x, axis_z_crs_axes3_y, axis_z_crs_axes3_z,
         crs_w_1_in_axes3_z, crs_w_1_x, crs_w_1_y, crs_w_1_z, axis_y_crs_axes3_x, axis_y_crs_axes3_y,
         axis_y_crs_axes3_z, axis_x_crs_axes3_x, axis_x_crs_axes3_y, axis_x_crs_axes3_z,
-        inv_crs_d_4_in_axes1_z, crs_w_2_in_axes3_x, crs_w_2_in_axes3_y, crs_w_2_x, crs_w_2_y,
+        inv_crs_v_3_in_axes1_x, crs_w_2_in_axes3_x, crs_w_2_in_axes3_y, crs_w_2_x, crs_w_2_y,
         crs_w_2_z, crs_g_in_axes1_x, crs_g_in_axes1_y, crs_g_in_axes3_x, crs_g_in_axes3_y, crs_mu_1_t,
         crs_H_a_1_x, crs_H_a_1_y, crs_H_a_1_z, crs_H_a_2_x, crs_H_a_2_y, crs_H_a_2_z, crs_S_dot_t,
         crs_S_dot_t_2, crs_S_dot_t_3, crs_qd_1, crs_qd_2_t, crs_qd_2, crs_W_3_in_axes3_yz,
         crs_W_3_in_axes3_xz, crs_W_3_in_axes3_xy, crs_bias_in_axes3_x, crs_bias_in_axes3_y,
         crs_bias_in_axes3_z, crs_mu_3_t_4, crs_mu_3_t_5, crs_mu_3_t_6, crs_c_t, crs_c_t_2, crs_c_t_3,
         crs_S_ddot_in_axes3_x, crs_S_ddot_in_axes3_y, crs_S_ddot_in_axes3_z, crs_qdd_1, crs_qdd_2_t,
-        crs_qdd_2, crs_Q_xx, crs_Q_xy, crs_Q_xz, crs_Q_yy, crs_Q_yz, crs_Q_zz, crs_M_ta_t_3,
-        crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_8, crs_M_ta_t_9, crs_M_ta_t_10,
-        crs_M_ta_t_11, crs_M_ta_t_12, crs_M_aa_t, crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4,
-        crs_M_aa_t_5, crs_M_aa_t_6, crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
+        crs_qdd_2, crs_Q_xx, crs_Q_yy, crs_Q_t_13, crs_Q_xy, crs_Q_xz, crs_Q_yz, crs_M_ta_t,
+        crs_M_ta_t_2, crs_M_ta_t_3, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_7, crs_M_ta_t_8,
+        crs_M_ta_t_9, crs_M_aa_t, crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5,
+        crs_M_aa_t_6, crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
         crs_acc_3_in_axes3_x, crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z, crs_c_in_axes3_x,
         crs_c_in_axes3_y, crs_c_in_axes3_z;
 } values_crs;
@@ -1607,15 +1620,15 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
     v->crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7;
     /* (crs-r_1) from joint 1 to the connection point, along the links */
-    v->crs_d_4_in_axes1_z = v->crs_e_1_in_axes3_x*m->crs_platform_joint_offset_x[i];
     v->crs_r_1_in_axes1_x = v->crs_h_3_t_13*m->crs_platform_joint_offset_x[i];
-    const real crs_r_1_in_axes1_z = m->crs_joint3_offset_x[i] + v->crs_h_3_t_11 +
-        v->crs_d_4_in_axes1_z;
+    const real crs_r_1_t = m->crs_joint3_offset_x[i] + v->crs_h_3_t_11;
+    const real crs_r_1_in_axes3_x = m->crs_platform_joint_offset_x[i] +
+        v->crs_e_1_in_axes3_x*crs_r_1_t;
     /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-    v->crs_v_1_in_axes3_z = v->crs_e_1_in_axes3_x*(v->crs_e_1_in_axes3_x*v->crs_r_1_in_axes1_x
-        - v->crs_h_3_t_13*crs_r_1_in_axes1_z) +
-        v->crs_h_3_t_13*(v->crs_h_3_t_13*v->crs_r_1_in_axes1_x +
-        v->crs_e_1_in_axes3_x*crs_r_1_in_axes1_z);
+    v->crs_v_1_in_axes3_z = v->crs_h_3_t_13*crs_r_1_in_axes3_x -
+        v->crs_e_1_in_axes3_x*v->crs_h_3_t_13*crs_r_1_t;
+    /* (crs-v_3) velocity of the connection point per rate of joint 3 */
+    v->crs_v_3_in_axes1_x = v->crs_e_1_in_axes3_x*m->crs_platform_joint_offset_x[i];
     /* (crs-w_1) reciprocal vector 1 */
     v->axis_z_crs_axes3_x = m->crs_base_frame_xz[i]*v->crs_c_1 -
         m->crs_base_frame_xy[i]*v->crs_s_1;
@@ -1642,8 +1655,8 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_crs_axes3_x*v->axis_z_crs_axes3_z;
     v->axis_x_crs_axes3_z = v->axis_y_crs_axes3_x*v->axis_z_crs_axes3_y -
         v->axis_y_crs_axes3_y*v->axis_z_crs_axes3_x;
-    v->inv_crs_d_4_in_axes1_z = 1/v->crs_d_4_in_axes1_z;
-    const real crs_w_2_t_3 = v->crs_r_1_in_axes1_x*v->inv_crs_d_4_in_axes1_z;
+    v->inv_crs_v_3_in_axes1_x = 1/v->crs_v_3_in_axes1_x;
+    const real crs_w_2_t_3 = v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
     v->crs_w_2_in_axes3_x = v->crs_e_1_in_axes3_x + v->crs_h_3_t_13*crs_w_2_t_3;
     v->crs_w_2_in_axes3_y = v->crs_e_1_in_axes3_x*crs_w_2_t_3 - v->crs_h_3_t_13;
     v->crs_w_2_x = v->axis_x_crs_axes3_x*v->crs_w_2_in_axes3_x +
@@ -1695,7 +1708,7 @@ INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         crs_S_dot_y*m->crs_base_frame_yz[i] + crs_S_dot_z*m->crs_base_frame_zz[i];
     v->crs_qd_1 = v->crs_w_1_in_axes3_z*(v->crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*v->crs_s_1);
     /* (crs-qd_2) rate of joint 2 */
-    v->crs_qd_2_t = v->inv_crs_d_4_in_axes1_z*(v->crs_c_1*crs_qd_1_t +
+    v->crs_qd_2_t = v->inv_crs_v_3_in_axes1_x*(v->crs_c_1*crs_qd_1_t +
         crs_qd_1_t_2*v->crs_s_1);
     v->crs_qd_2 = crs_S_dot_x*m->crs_base_frame_xx[i] + crs_S_dot_y*m->crs_base_frame_yx[i] +
         crs_S_dot_z*m->crs_base_frame_zx[i] + v->crs_qd_2_t*v->crs_r_1_in_axes1_x;
@@ -1769,7 +1782,7 @@ INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     /* (crs-qdd_1) acceleration of joint 1 */
     v->crs_qdd_1 = crs_rel_in_axes3_z*v->crs_w_1_in_axes3_z;
     /* (crs-qdd_2) acceleration of joint 2 */
-    v->crs_qdd_2_t = v->inv_crs_d_4_in_axes1_z*(v->crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+    v->crs_qdd_2_t = v->inv_crs_v_3_in_axes1_x*(v->crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
         v->crs_h_3_t_13*crs_rel_in_axes3_x);
     v->crs_qdd_2 = v->crs_e_1_in_axes3_x*crs_rel_in_axes3_x -
         v->crs_h_3_t_13*crs_rel_in_axes3_y + v->crs_qdd_2_t*v->crs_r_1_in_axes1_x;
@@ -1778,11 +1791,11 @@ INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *s, const real *A, va
 INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
 {
     /* (crs-w_3) reciprocal vector 3 */
-    const real crs_w_3_in_axes3_x = v->crs_h_3_t_13*v->inv_crs_d_4_in_axes1_z;
-    const real crs_w_3_in_axes3_y = v->crs_e_1_in_axes3_x*v->inv_crs_d_4_in_axes1_z;
+    const real crs_w_3_in_axes3_x = v->crs_h_3_t_13*v->inv_crs_v_3_in_axes1_x;
+    const real crs_w_3_in_axes3_y = v->crs_e_1_in_axes3_x*v->inv_crs_v_3_in_axes1_x;
     /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real crs_d_Gamma_3_t = m->crs_J_3_in_spec3_zz[i]*v->inv_crs_d_4_in_axes1_z;
+    const real crs_d_Gamma_3_t = m->crs_J_3_in_spec3_zz[i]*v->inv_crs_v_3_in_axes1_x;
     const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_h_3_t_13 -
         m->crs_h_3_in_spec3_y[i];
     const real crs_d_Gamma_3_in_axes3_y = m->crs_h_3_in_spec3_x[i] +
@@ -1790,13 +1803,13 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
     /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
        inertia and weight */
     const real crs_d_Gamma_2_t =
-        m->crs_link2_mass[i]*v->crs_r_1_in_axes1_x*v->inv_crs_d_4_in_axes1_z;
+        m->crs_link2_mass[i]*v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
     const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*v->crs_e_1_in_axes3_x -
         v->crs_h_3_t_13*m->crs_link2_mass[i];
     /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real crs_d_Gamma_1_in_axes1_x =
-        v->inv_crs_d_4_in_axes1_z*(m->crs_J_3_in_spec3_xz[i]*v->crs_e_1_in_axes3_x -
+        v->inv_crs_v_3_in_axes1_x*(m->crs_J_3_in_spec3_xz[i]*v->crs_e_1_in_axes3_x -
         m->crs_J_3_in_spec3_yz[i]*v->crs_h_3_t_13) - m->crs_h_3_in_spec3_z[i];
     const real crs_d_Gamma_1_in_axes1_y = v->crs_h_3_in_axes1_x +
         v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i] +
@@ -1819,22 +1832,23 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
     const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_y -
         crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x -
         crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_x;
-    /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real crs_Q_t = m->crs_h_3_in_spec3_x[i]*crs_w_3_in_axes3_y +
-        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y +
-        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_y + crs_d_c_in_axes3_xx;
-    const real crs_Q_t_2 = R(0.5)*crs_Q_t;
-    const real crs_Q_t_3 = crs_d_c_in_axes3_xx +
-        crs_d_Gamma_1_in_axes1_y*v->crs_w_1_in_axes3_z +
-        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z +
+    const real crs_d_c_in_axes3_yy = -m->crs_h_3_in_spec3_x[i]*crs_w_3_in_axes3_y -
+        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y -
+        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_y;
+    const real crs_d_c_in_axes3_zz = -crs_d_Gamma_1_in_axes1_y*v->crs_w_1_in_axes3_z -
+        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z -
         m->crs_h_3_in_spec3_x[i]*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
+    /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy;
+    const real crs_Q_t_2 = R(0.5)*crs_Q_t;
+    const real crs_Q_t_3 = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_zz;
     const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-    const real crs_Q_t_5 = v->axis_y_crs_axes3_x*crs_Q_t_2 -
-        v->axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + v->axis_z_crs_axes3_x*crs_d_G_in_axes3_zy;
-    const real crs_Q_t_6 = v->axis_y_crs_axes3_y*crs_Q_t_2 -
-        v->axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + v->axis_z_crs_axes3_y*crs_d_G_in_axes3_zy;
-    const real crs_Q_t_7 = v->axis_y_crs_axes3_z*crs_Q_t_2 -
-        v->axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + v->axis_z_crs_axes3_z*crs_d_G_in_axes3_zy;
+    const real crs_Q_t_5 = v->axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_x*crs_Q_t_2;
+    const real crs_Q_t_6 = v->axis_z_crs_axes3_y*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_y*crs_Q_t_2;
+    const real crs_Q_t_7 = v->axis_z_crs_axes3_z*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_z*crs_Q_t_2;
     const real crs_Q_t_8 = v->axis_x_crs_axes3_x*crs_d_G_in_axes3_zx +
         v->axis_z_crs_axes3_x*crs_Q_t_4;
     const real crs_Q_t_9 = v->axis_x_crs_axes3_y*crs_d_G_in_axes3_zx +
@@ -1843,37 +1857,33 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
         v->axis_z_crs_axes3_z*crs_Q_t_4;
     const real crs_Q_t_11 = v->axis_y_crs_axes3_x*crs_Q_t_5 + v->axis_z_crs_axes3_x*crs_Q_t_8;
     v->crs_Q_xx = 2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
+    const real crs_Q_t_12 = v->axis_y_crs_axes3_y*crs_Q_t_6 + v->axis_z_crs_axes3_y*crs_Q_t_9;
+    v->crs_Q_yy = 2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
+    v->crs_Q_t_13 = crs_d_c_in_axes3_xx + crs_d_c_in_axes3_yy + crs_d_c_in_axes3_zz +
+        v->crs_Q_xx + v->crs_Q_yy;
     v->crs_Q_xy = v->axis_y_crs_axes3_x*crs_Q_t_6 + v->axis_y_crs_axes3_y*crs_Q_t_5 +
         v->axis_z_crs_axes3_x*crs_Q_t_9 + v->axis_z_crs_axes3_y*crs_Q_t_8;
     v->crs_Q_xz = v->axis_y_crs_axes3_x*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_5 +
         v->axis_z_crs_axes3_x*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_8;
-    const real crs_Q_t_12 = v->axis_y_crs_axes3_y*crs_Q_t_6 + v->axis_z_crs_axes3_y*crs_Q_t_9;
-    v->crs_Q_yy = 2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
     v->crs_Q_yz = v->axis_y_crs_axes3_y*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_6 +
         v->axis_z_crs_axes3_y*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_9;
-    const real crs_Q_t_13 = v->axis_y_crs_axes3_z*crs_Q_t_7 +
-        v->axis_z_crs_axes3_z*crs_Q_t_10;
-    v->crs_Q_zz = 2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
     /* (M_ta) coupling block of M */
-    const real crs_M_ta_t = v->crs_Q_xy*v->crs_q_z;
-    const real crs_M_ta_t_2 = v->crs_Q_xz*v->crs_q_y;
-    v->crs_M_ta_t_3 = crs_M_ta_t_2 - crs_M_ta_t;
-    v->crs_M_ta_t_4 = v->crs_Q_xx*v->crs_q_z - v->crs_Q_xz*v->crs_q_x;
-    v->crs_M_ta_t_5 = v->crs_Q_xy*v->crs_q_x - v->crs_Q_xx*v->crs_q_y;
-    v->crs_M_ta_t_6 = v->crs_Q_yz*v->crs_q_y - v->crs_Q_yy*v->crs_q_z;
-    const real crs_M_ta_t_7 = v->crs_Q_yz*v->crs_q_x;
-    v->crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7;
-    v->crs_M_ta_t_9 = v->crs_Q_yy*v->crs_q_x - v->crs_Q_xy*v->crs_q_y;
-    v->crs_M_ta_t_10 = v->crs_Q_zz*v->crs_q_y - v->crs_Q_yz*v->crs_q_z;
-    v->crs_M_ta_t_11 = v->crs_Q_xz*v->crs_q_z - v->crs_Q_zz*v->crs_q_x;
-    v->crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
+    v->crs_M_ta_t = v->crs_Q_xx*v->crs_q_z - v->crs_Q_xz*v->crs_q_x;
+    v->crs_M_ta_t_2 = v->crs_Q_xx*v->crs_q_y - v->crs_Q_xy*v->crs_q_x;
+    v->crs_M_ta_t_3 = v->crs_Q_yy*v->crs_q_z - v->crs_Q_yz*v->crs_q_y;
+    const real crs_M_ta_t_4 = v->crs_Q_yz*v->crs_q_x;
+    v->crs_M_ta_t_5 = v->crs_Q_xy*v->crs_q_z - crs_M_ta_t_4;
+    v->crs_M_ta_t_6 = v->crs_Q_yy*v->crs_q_x - v->crs_Q_xy*v->crs_q_y;
+    v->crs_M_ta_t_7 = v->crs_Q_yz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_y;
+    v->crs_M_ta_t_8 = v->crs_Q_xz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_x;
+    v->crs_M_ta_t_9 = crs_M_ta_t_4 - v->crs_Q_xz*v->crs_q_y;
     /* (M_aa) rotational block of M */
-    v->crs_M_aa_t = v->crs_M_ta_t_10*v->crs_q_y - v->crs_M_ta_t_6*v->crs_q_z;
-    v->crs_M_aa_t_2 = v->crs_M_ta_t_11*v->crs_q_y - v->crs_M_ta_t_8*v->crs_q_z;
-    v->crs_M_aa_t_3 = v->crs_M_ta_t_12*v->crs_q_y - v->crs_M_ta_t_9*v->crs_q_z;
-    v->crs_M_aa_t_4 = v->crs_M_ta_t_4*v->crs_q_z - v->crs_M_ta_t_11*v->crs_q_x;
-    v->crs_M_aa_t_5 = v->crs_M_ta_t_5*v->crs_q_z - v->crs_M_ta_t_12*v->crs_q_x;
-    v->crs_M_aa_t_6 = v->crs_M_ta_t_9*v->crs_q_x - v->crs_M_ta_t_5*v->crs_q_y;
+    v->crs_M_aa_t = v->crs_M_ta_t_3*v->crs_q_z - v->crs_M_ta_t_7*v->crs_q_y;
+    v->crs_M_aa_t_2 = v->crs_M_ta_t_8*v->crs_q_y - v->crs_M_ta_t_5*v->crs_q_z;
+    v->crs_M_aa_t_3 = v->crs_M_ta_t_9*v->crs_q_y - v->crs_M_ta_t_6*v->crs_q_z;
+    v->crs_M_aa_t_4 = v->crs_M_ta_t*v->crs_q_z - v->crs_M_ta_t_8*v->crs_q_x;
+    v->crs_M_aa_t_5 = v->crs_M_ta_t_2*v->crs_q_z + v->crs_M_ta_t_9*v->crs_q_x;
+    v->crs_M_aa_t_6 = v->crs_M_ta_t_2*v->crs_q_y + v->crs_M_ta_t_6*v->crs_q_x;
 }
 
 INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1901,7 +1911,7 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real crs_qdd_1_o = crs_rel_o_in_axes3_z*v->crs_w_1_in_axes3_z;
     /* (crs-qdd_3_o) remainder of: acceleration of joint 3 */
     const real crs_qdd_3_o =
-        v->inv_crs_d_4_in_axes1_z*(v->crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
+        v->inv_crs_v_3_in_axes1_x*(v->crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
         v->crs_h_3_t_13*crs_rel_o_in_axes3_x);
     /* (crs-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real crs_alpha_1_o_in_axes3_x = v->crs_e_1_in_axes3_x*crs_qdd_1_o;
@@ -1954,7 +1964,7 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real crs_c_o_t =
-        v->inv_crs_d_4_in_axes1_z*(crs_f_2_o_in_axes1_z*v->crs_r_1_in_axes1_x +
+        v->inv_crs_v_3_in_axes1_x*(crs_f_2_o_in_axes1_z*v->crs_r_1_in_axes1_x +
         crs_mu_3_o_in_axes3_z);
     const real crs_c_o_in_axes3_x = v->crs_c_t -
         crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
@@ -2029,7 +2039,7 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
         v->crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x - v->crs_h_3_t_13*crs_mu_3_in_axes3_y;
     /* (crs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real crs_c_t_4 = v->inv_crs_d_4_in_axes1_z*(crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x
+    const real crs_c_t_4 = v->inv_crs_v_3_in_axes1_x*(crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x
         + crs_mu_3_in_axes3_z);
     v->crs_c_in_axes3_x = v->crs_c_t - crs_alpha_1_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
         crs_B_3_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
@@ -2042,11 +2052,8 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
         crs_N_1_in_axes1_z*v->crs_w_1_in_axes3_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2062,14 +2069,86 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[2*i*w + k] = o[0*count + at];
+    H[(NU + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 2*i)*w + k] = o[5*count + at];
+    H[(1 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
+}
+
+INLINE void any_place_crs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2096,32 +2175,31 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[2*count + k], add, v.crs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.crs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.crs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.crs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.crs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.crs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.crs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.crs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.crs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.crs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.crs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.crs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.crs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.crs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.crs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.crs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.crs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.crs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.crs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.crs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.crs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.crs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.crs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.crs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.crs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.crs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.crs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.crs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.crs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.crs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.crs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.crs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (crs-w_1) reciprocal vector 1 */
     o[0*count + k] = v.crs_w_1_x;
     o[1*count + k] = v.crs_w_1_y;
@@ -2143,29 +2221,9 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
         (v.crs_H_a_2_x + (v.crs_H_a_2_y + v.crs_H_a_2_z)));
     o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_d_4_in_axes1_z) >
+        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
         TOLERANCE*m->crs_size[i]);
     o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
-}
-
-INLINE void dynamics_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2177,60 +2235,63 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2247,7 +2308,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2256,7 +2316,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2265,7 +2324,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2295,17 +2353,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_crs[27*LEGS(LEGS_OF_crs)] = {0}, o_crs[15*LEGS(LEGS_OF_crs)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_crs[26*LEGS(LEGS_OF_crs)] CLEARED, o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         dynamics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
-        dynamics_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, H, t);
+        any_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2315,20 +2373,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_crs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
+            any_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2337,31 +2395,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2374,34 +2407,27 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[2*count + k], add, v.crs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.crs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.crs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.crs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.crs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.crs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.crs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.crs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.crs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.crs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.crs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.crs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.crs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.crs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.crs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.crs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.crs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.crs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.crs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.crs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
         + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*m->crs_size[i]);
+        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
-}
-
-INLINE void M_place_crs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2413,41 +2439,44 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2463,7 +2492,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2472,7 +2500,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2481,7 +2508,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2502,17 +2528,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_crs[21*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_crs[20*LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         M_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
-        M_place_crs(0, i, LEGS(LEGS_OF_crs), o_crs, t);
+        any_place_crs_2(0, i, LEGS(LEGS_OF_crs), o_crs, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2521,19 +2547,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_crs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_crs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_crs(k, k, LANES, o_crs, t);
+            any_place_crs_2(k, k, LANES, o_crs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2542,22 +2568,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2586,14 +2596,8 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[5*count + k], add, v.crs_Z_a_t_3);  /* Z_a_z_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
         + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*m->crs_size[i]);
+        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
-}
-
-INLINE void Z_place_crs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2631,15 +2635,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_crs[6*LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         Z_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
-        Z_place_crs(0, i, LEGS(LEGS_OF_crs), o_crs, t);
+        any_place_crs_2(0, i, LEGS(LEGS_OF_crs), o_crs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
@@ -2655,7 +2659,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_crs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2664,7 +2668,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_crs(k, k, LANES, o_crs, t);
+            any_place_crs_2(k, k, LANES, o_crs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2673,22 +2677,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2715,42 +2703,22 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.crs_H_a_2_x + (v.crs_H_a_2_y + v.crs_H_a_2_z)));
     o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_d_4_in_axes1_z) >
+        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
         TOLERANCE*m->crs_size[i]);
     o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
-INLINE void H_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_crs[15*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED;
+    real o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         H_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
-        H_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, H, t);
+        any_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, H, t);
     }
 }
 
@@ -2761,46 +2729,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_crs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_crs(m, LANES, i, k, k, LANES, s, X, o_crs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
+            any_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2811,9 +2752,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -2843,27 +2781,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -2919,7 +2854,7 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     o[11*count + k] = v.crs_H_a_2_z;
     o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_d_4_in_axes1_z) >
+        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
         TOLERANCE*m->crs_size[i]);
     o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
@@ -2978,12 +2913,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[14*LEGS(LEGS_OF_crs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_crs[6*LEGS(LEGS_OF_crs)] CLEARED, o_crs[14*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
-        required_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, A, terms_crs, o_crs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
+            required_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), 0, s, X, V, A, terms_crs,
+                o_crs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         required_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, H, t);
@@ -3002,7 +2940,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_crs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3020,22 +2958,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3070,10 +2992,10 @@ INLINE void inverse_kinematics_place_crs(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED;
+    real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         inverse_kinematics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
@@ -3089,7 +3011,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3102,22 +3024,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3133,7 +3039,7 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j
     o[5*count + k] = v.crs_qd_1 + (v.crs_qd_2 + v.crs_qd_2_t);
     o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
         + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*m->crs_size[i]);
+        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
@@ -3151,10 +3057,10 @@ INLINE void joint_rates_place_crs(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED;
+    real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_rates_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, o_crs);
     }
@@ -3170,7 +3076,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3183,33 +3089,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3226,7 +3105,7 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     o[5*count + k] = v.crs_qdd_1 + (v.crs_qdd_2 + v.crs_qdd_2_t);
     o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
         + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*m->crs_size[i]);
+        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
@@ -3244,10 +3123,10 @@ INLINE void joint_accelerations_place_crs(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED;
+    real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_accelerations_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
     }
@@ -3263,7 +3142,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_crs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3276,33 +3155,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3341,7 +3193,7 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[8*count + k] = v.crs_w_2_z;
     o[10*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_d_4_in_axes1_z) >
+        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
         TOLERANCE*m->crs_size[i]);
     o[9*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
@@ -3365,12 +3217,14 @@ INLINE void legs_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_crs[11*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED;
+    real o_crs[11*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
-        legs_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
+            legs_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
         legs_place_crs(1, i, 0, i, LEGS(LEGS_OF_crs), o_crs, leg_force, actuator, t);
@@ -3378,22 +3232,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3429,12 +3267,6 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
-INLINE void potential_place_crs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3447,15 +3279,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_crs[LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
-        potential_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
+            potential_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs,
+                o_crs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
-        potential_place_crs(0, i, LEGS(LEGS_OF_crs), o_crs, t);
+        any_place_crs_2(0, i, LEGS(LEGS_OF_crs), o_crs, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_crs + n*LEGS(LEGS_OF_crs), LEGS_OF_crs);
@@ -3493,7 +3328,7 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
        degrees of freedom */
     const real crs_pivot_size = magnitude(v.crs_h_3_t_7);
     const real crs_pivot_size_2 = magnitude(v.crs_v_1_in_axes3_z);
-    const real crs_pivot_size_3 = magnitude(v.crs_d_4_in_axes1_z);
+    const real crs_pivot_size_3 = magnitude(v.crs_v_3_in_axes1_x);
     const real crs_least_pivots = lesser(lesser(root(crs_pivot_size*m->inv_crs_size_t_2[i]),
         crs_pivot_size_2*m->inv_crs_size[i]), crs_pivot_size_3*m->inv_crs_size[i]);
     /* (spread) rms distance of the platform points from their centroid */
@@ -3529,7 +3364,7 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
         v.crs_h_3_t_10)));
     o[15*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_d_4_in_axes1_z) >
+        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
         TOLERANCE*m->crs_size[i]);
     o[14*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
@@ -3570,8 +3405,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[17*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_crs[LEGS(LEGS_OF_crs)] CLEARED, o_crs[17*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
@@ -3942,7 +3777,7 @@ int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -3991,8 +3826,8 @@ int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4061,7 +3896,7 @@ int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4078,7 +3913,7 @@ int hybrid_3crs_leg_reactions(const prepared *m, const real *X, const real *V, c
 int hybrid_3crs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4099,8 +3934,8 @@ int hybrid_3crs_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4131,9 +3966,9 @@ int hybrid_3crs_manipulability(const prepared *m, const real *X, real *measure_o
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4165,9 +4000,9 @@ int hybrid_3crs_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4199,8 +4034,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 2, 4};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4289,7 +4124,7 @@ int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4302,7 +4137,7 @@ int hybrid_3crs_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4314,7 +4149,7 @@ int hybrid_3crs_momentum(const prepared *m, const real *X, const real *V, real *
 int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4329,7 +4164,7 @@ int hybrid_3crs_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4343,7 +4178,7 @@ int hybrid_3crs_within_limits(const prepared *m, const real *X, real *within_out
 
 int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4354,7 +4189,7 @@ int hybrid_3crs_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4366,7 +4201,7 @@ int hybrid_3crs_actuator_rates(const prepared *m, const real *X, const real *V, 
 int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4378,7 +4213,7 @@ int hybrid_3crs_actuator_accelerations(const prepared *m, const real *X, const r
 int hybrid_3crs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4438,7 +4273,7 @@ int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4454,7 +4289,7 @@ int hybrid_3crs_retract(const real *X, const real *step, real *X_moved_out)
 
 int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4470,7 +4305,8 @@ int hybrid_3crs_difference(const real *X0, const real *X1, real *step_out)
 
 int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -119,7 +119,7 @@ typedef struct {
             inv_crs_size_t[4], inv_crs_size_t_2[4];
     hybrid_3crs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hybrid_3crs_model;
@@ -138,19 +138,19 @@ extern const char *const hybrid_3crs_ACTUATOR_NAMES[HYBRID_3CRS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *model);
 
-/* Inertia matrix M. 555 mul, 420 add, 9 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 537 mul, 415 add, 9 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3crs_M(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hybrid_3crs_real *M);
 size_t hybrid_3crs_M_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
     hybrid_3crs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 678 mul, 507 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 669 mul, 501 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int hybrid_3crs_Z(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *Z);
 size_t hybrid_3crs_Z_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
     const hybrid_3crs_real *V, hybrid_3crs_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 255 mul, 156 add, 9 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 249 mul, 150 add, 9 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int hybrid_3crs_H(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hybrid_3crs_real *H);
 size_t hybrid_3crs_H_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
@@ -163,14 +163,14 @@ int hybrid_3crs_inverse_kinematics(const hybrid_3crs_model *model, const hybrid_
 size_t hybrid_3crs_inverse_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, hybrid_3crs_real *q, int *status);
 
-/* Rates of all joints. 180 mul, 132 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 174 mul, 126 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3crs_joint_rates(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *rates);
 size_t hybrid_3crs_joint_rates_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *rates, int *status);
 
-/* Accelerations of all joints. 396 mul, 267 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 390 mul, 261 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3crs_joint_accelerations(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *accelerations);
@@ -178,7 +178,7 @@ size_t hybrid_3crs_joint_accelerations_batch(const hybrid_3crs_model *model, siz
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1068 mul, 801 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 1050 mul, 796 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3crs_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H);
@@ -186,7 +186,7 @@ size_t hybrid_3crs_dynamics_batch(const hybrid_3crs_model *model, size_t n, cons
     *X, const hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 774 mul, 579 add, 9 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 759 mul, 567 add, 9 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int hybrid_3crs_inverse_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
@@ -196,7 +196,7 @@ size_t hybrid_3crs_inverse_dynamics_batch(const hybrid_3crs_model *model, size_t
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1068 mul, 801 add, 9 div, 6 sqrt,
+/* Acceleration A under the actuator forces tau and the wrench. 1050 mul, 796 add, 9 div, 6 sqrt,
    0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
    or NULL). Out: A (NV). */
 int hybrid_3crs_forward_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
@@ -217,7 +217,7 @@ size_t hybrid_3crs_complete_acceleration_batch(const hybrid_3crs_model *model, s
     hybrid_3crs_real *wrench, hybrid_3crs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 642 mul, 471 add, 9 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 636 mul, 465 add, 9 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3crs_leg_reactions(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
@@ -237,7 +237,7 @@ size_t hybrid_3crs_energy_batch(const hybrid_3crs_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 274 mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 268 mul, 174 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int hybrid_3crs_condition(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     hybrid_3crs_real *sigma, hybrid_3crs_real *legs);
@@ -245,15 +245,15 @@ size_t hybrid_3crs_condition_batch(const hybrid_3crs_model *model, size_t n, con
     hybrid_3crs_real *X, hybrid_3crs_real *sigma, hybrid_3crs_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 274 mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular
+   the least over the largest of them. 268 mul, 174 add, 9 div, 10 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int hybrid_3crs_manipulability(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     hybrid_3crs_real *measure, hybrid_3crs_real *isotropy);
 size_t hybrid_3crs_manipulability_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, hybrid_3crs_real *measure, hybrid_3crs_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 274
-   mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 268
+   mul, 174 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int hybrid_3crs_singularity_distance(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     hybrid_3crs_real *actuators, hybrid_3crs_real *legs);
@@ -275,7 +275,7 @@ int hybrid_3crs_dissipation(const hybrid_3crs_model *model, const hybrid_3crs_re
 size_t hybrid_3crs_dissipation_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 555 mul, 420 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 537 mul, 415 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3crs_momentum(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *momentum);
@@ -303,14 +303,14 @@ int hybrid_3crs_actuator_positions(const hybrid_3crs_model *model, const hybrid_
 size_t hybrid_3crs_actuator_positions_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, hybrid_3crs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 180 mul, 132 add, 9 div, 6 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 174 mul, 126 add, 9 div, 6 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3crs_actuator_rates(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *rates);
 size_t hybrid_3crs_actuator_rates_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 396 mul, 267 add, 9 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 390 mul, 261 add, 9 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3crs_actuator_accelerations(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
     const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *accelerations);

@@ -661,6 +661,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -674,9 +675,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_crs,
         (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
@@ -695,8 +696,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_crs,
         (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
@@ -713,9 +714,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_crs,
         (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
@@ -1842,14 +1843,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1068 mul, 801 add, 9 div, 6 sqrt, 0 trig
+# dynamics: 1050 mul, 796 add, 9 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1916,13 +1917,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1938,11 +1938,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_crs_zz, M_ta_xx, M_ta_crs_xy,
-        M_ta_crs_xz, M_ta_crs_yx, M_ta_yy, M_ta_crs_yz, M_ta_crs_zx, M_ta_crs_zy, M_ta_zz,
-        M_aa_crs_xx, M_aa_crs_xy, M_aa_crs_xz, M_aa_crs_yy, M_aa_crs_yz, M_aa_crs_zz, Z_t_crs_x,
-        Z_t_crs_y, Z_t_crs_z, Z_a_crs_x, Z_a_crs_y, Z_a_crs_z,
-    ) = [0.0] * 27
+    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_crs_xy,
+        M_ta_t, M_ta_t_2, M_ta_crs_yz, M_ta_t_3, M_ta_crs_zy, M_aa_crs_xx, M_aa_crs_xy,
+        M_aa_crs_xz, M_aa_crs_yy, M_aa_t, M_aa_crs_zz, Z_t_crs_x, Z_t_crs_y, Z_t_crs_z, Z_a_crs_x,
+        Z_a_crs_y, Z_a_crs_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
@@ -2006,15 +2006,15 @@ def _run_dynamics(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -2047,16 +2047,16 @@ def _run_dynamics(m, X, V):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_d_4_in_axes1_z
-        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_v_3_in_axes1_x
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -2068,7 +2068,7 @@ def _run_dynamics(m, X, V):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
@@ -2121,7 +2121,7 @@ def _run_dynamics(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
+        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
             crs_h_3_t_13*crs_rel_o_in_axes3_x)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
@@ -2183,7 +2183,7 @@ def _run_dynamics(m, X, V):
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
         )
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_v_3_in_axes1_x
         crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
         crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
@@ -2196,13 +2196,13 @@ def _run_dynamics(m, X, V):
             crs_h_3_t_13*crs_mu_3_o_in_axes3_y
         )
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_d_Gamma_2_in_axes3_y = (
         crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
         )
         # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         crs_d_Gamma_1_in_axes1_x = (
-        inv_crs_d_4_in_axes1_z*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
+        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
             crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
         )
         crs_d_Gamma_1_in_axes1_y = (
@@ -2228,9 +2228,18 @@ def _run_dynamics(m, X, V):
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
             crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
         )
+        crs_d_c_in_axes3_yy = (
+        -crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y - crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y
+            - crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
+        )
+        crs_d_c_in_axes3_zz = (
+        -crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z -
+            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
+            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
+        )
         # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
-        inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
+        inv_crs_v_3_in_axes1_x*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_o_in_axes3_x = (
         crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
@@ -2247,16 +2256,9 @@ def _run_dynamics(m, X, V):
             crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
-        crs_Q_t = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
-        )
+        crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy
         crs_Q_t_2 = 0.5*crs_Q_t
-        crs_Q_t_3 = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z +
-            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z +
-            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
-        )
+        crs_Q_t_3 = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_zz
         crs_Q_t_4 = 0.5*crs_Q_t_3
         crs_Q_t_5 = (
         axis_y_crs_axes3_x*crs_Q_t_2 + axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
@@ -2275,6 +2277,11 @@ def _run_dynamics(m, X, V):
         crs_Q_t_10 = axis_x_crs_axes3_z*crs_d_G_in_axes3_zx + axis_z_crs_axes3_z*crs_Q_t_4
         crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_8
         crs_Q_xx = 2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
+        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
+        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
+        crs_Q_t_13 = (
+        crs_Q_xx + crs_Q_yy + crs_d_c_in_axes3_xx + crs_d_c_in_axes3_yy + crs_d_c_in_axes3_zz
+        )
         crs_Q_xy = (
         axis_y_crs_axes3_x*crs_Q_t_6 + axis_y_crs_axes3_y*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_9
             + axis_z_crs_axes3_y*crs_Q_t_8
@@ -2283,14 +2290,10 @@ def _run_dynamics(m, X, V):
         axis_y_crs_axes3_x*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_5 +
             axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8
         )
-        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
-        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
         crs_Q_yz = (
         axis_y_crs_axes3_y*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_6 +
             axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9
         )
-        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 + axis_z_crs_axes3_z*crs_Q_t_10
-        crs_Q_zz = 2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
         # (crs-U) velocity and gravity terms of the leg force
         crs_U_x = (
         -axis_x_crs_axes3_x*crs_c_o_in_axes3_x - axis_y_crs_axes3_x*crs_c_o_in_axes3_y -
@@ -2305,25 +2308,22 @@ def _run_dynamics(m, X, V):
             axis_z_crs_axes3_z*crs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        crs_M_ta_t = crs_Q_xy*crs_q_z
-        crs_M_ta_t_2 = crs_Q_xz*crs_q_y
-        crs_M_ta_t_3 = crs_M_ta_t_2 - crs_M_ta_t
-        crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
-        crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
-        crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
-        crs_M_ta_t_7 = crs_Q_yz*crs_q_x
-        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
-        crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
-        crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
-        crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
-        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
+        crs_M_ta_t = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
+        crs_M_ta_t_2 = crs_Q_xx*crs_q_y - crs_Q_xy*crs_q_x
+        crs_M_ta_t_3 = crs_Q_yy*crs_q_z - crs_Q_yz*crs_q_y
+        crs_M_ta_t_4 = crs_Q_yz*crs_q_x
+        crs_M_ta_t_5 = crs_Q_xy*crs_q_z - crs_M_ta_t_4
+        crs_M_ta_t_6 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
+        crs_M_ta_t_7 = crs_Q_t_13*crs_q_y + crs_Q_yz*crs_q_z
+        crs_M_ta_t_8 = crs_Q_t_13*crs_q_x + crs_Q_xz*crs_q_z
+        crs_M_ta_t_9 = crs_M_ta_t_4 - crs_Q_xz*crs_q_y
         # (M_aa) rotational block of M
-        crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
-        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y - crs_M_ta_t_8*crs_q_z
-        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
-        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
-        crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
-        crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y
+        crs_M_aa_t = crs_M_ta_t_3*crs_q_z - crs_M_ta_t_7*crs_q_y
+        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_y - crs_M_ta_t_5*crs_q_z
+        crs_M_aa_t_3 = crs_M_ta_t_9*crs_q_y - crs_M_ta_t_6*crs_q_z
+        crs_M_aa_t_4 = crs_M_ta_t*crs_q_z - crs_M_ta_t_8*crs_q_x
+        crs_M_aa_t_5 = crs_M_ta_t_2*crs_q_z + crs_M_ta_t_9*crs_q_x
+        crs_M_aa_t_6 = crs_M_ta_t_2*crs_q_y + crs_M_ta_t_6*crs_q_x
         # (Z_a) rotational part of Z
         crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z
         crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x
@@ -2338,7 +2338,7 @@ def _run_dynamics(m, X, V):
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (M_tt) translational block of M
@@ -2347,23 +2347,22 @@ def _run_dynamics(m, X, V):
         M_tt_xz += crs_Q_xz
         M_tt_crs_yy += crs_Q_yy
         M_tt_yz += crs_Q_yz
-        M_tt_crs_zz += crs_Q_zz
+        M_tt_t += crs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += crs_M_ta_t_3
-        M_ta_crs_xy += crs_M_ta_t_4
-        M_ta_crs_xz += crs_M_ta_t_5
-        M_ta_crs_yx += crs_M_ta_t_6
-        M_ta_yy += crs_M_ta_t_8
-        M_ta_crs_yz += crs_M_ta_t_9
-        M_ta_crs_zx += crs_M_ta_t_10
-        M_ta_crs_zy += crs_M_ta_t_11
-        M_ta_zz += crs_M_ta_t_12
+        M_ta_yy += crs_M_ta_t_5
+        M_ta_zz += crs_M_ta_t_9
+        M_ta_crs_xy += crs_M_ta_t
+        M_ta_t += crs_M_ta_t_2
+        M_ta_t_2 += crs_M_ta_t_3
+        M_ta_crs_yz += crs_M_ta_t_6
+        M_ta_t_3 += crs_M_ta_t_7
+        M_ta_crs_zy += crs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_crs_xx += crs_M_aa_t
         M_aa_crs_xy += crs_M_aa_t_2
         M_aa_crs_xz += crs_M_aa_t_3
         M_aa_crs_yy += crs_M_aa_t_4
-        M_aa_crs_yz += crs_M_aa_t_5
+        M_aa_t += crs_M_aa_t_5
         M_aa_crs_zz += crs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_crs_x += crs_U_x
@@ -2392,20 +2391,21 @@ def _run_dynamics(m, X, V):
     # (M_tt) translational block of M
     M_tt_xx = M_tt_crs_xx + m_star
     M_tt_yy = M_tt_crs_yy + m_star
-    M_tt_zz = M_tt_crs_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_crs_xy + h_star_z
-    M_ta_xz = M_ta_crs_xz - h_star_y
-    M_ta_yx = M_ta_crs_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_crs_yz + h_star_x
-    M_ta_zx = M_ta_crs_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_crs_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_crs_xx
     M_aa_xy = J_star_xy + M_aa_crs_xy
     M_aa_xz = J_star_xz + M_aa_crs_xz
     M_aa_yy = J_star_yy + M_aa_crs_yy
-    M_aa_yz = J_star_yz + M_aa_crs_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_crs_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_crs_x
@@ -2465,13 +2465,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 555 mul, 420 add, 9 div, 6 sqrt, 0 trig
+# M: 537 mul, 415 add, 9 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2524,18 +2524,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_crs_zz, M_ta_xx, M_ta_crs_xy,
-        M_ta_crs_xz, M_ta_crs_yx, M_ta_yy, M_ta_crs_yz, M_ta_crs_zx, M_ta_crs_zy, M_ta_zz,
-        M_aa_crs_xx, M_aa_crs_xy, M_aa_crs_xz, M_aa_crs_yy, M_aa_crs_yz, M_aa_crs_zz,
-    ) = [0.0] * 21
+    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_crs_xy,
+        M_ta_t, M_ta_t_2, M_ta_crs_yz, M_ta_t_3, M_ta_crs_zy, M_aa_crs_xx, M_aa_crs_xy,
+        M_aa_crs_xz, M_aa_crs_yy, M_aa_t, M_aa_crs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
@@ -2590,15 +2589,15 @@ def _run_M(m, X):
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
         crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -2628,25 +2627,25 @@ def _run_M(m, X):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_d_4_in_axes1_z
-        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_v_3_in_axes1_x
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_v_3_in_axes1_x
         crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
         crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_d_Gamma_2_in_axes3_y = (
         crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
         )
         # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         crs_d_Gamma_1_in_axes1_x = (
-        inv_crs_d_4_in_axes1_z*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
+        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
             crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
         )
         crs_d_Gamma_1_in_axes1_y = (
@@ -2668,17 +2667,19 @@ def _run_M(m, X):
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
             crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
         )
-        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
-        crs_Q_t = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
+        crs_d_c_in_axes3_yy = (
+        -crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y - crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y
+            - crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
         )
-        crs_Q_t_2 = 0.5*crs_Q_t
-        crs_Q_t_3 = (
-        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z +
-            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z +
+        crs_d_c_in_axes3_zz = (
+        -crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z -
+            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
             crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
         )
+        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
+        crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy
+        crs_Q_t_2 = 0.5*crs_Q_t
+        crs_Q_t_3 = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_zz
         crs_Q_t_4 = 0.5*crs_Q_t_3
         crs_Q_t_5 = (
         axis_y_crs_axes3_x*crs_Q_t_2 + axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
@@ -2697,6 +2698,11 @@ def _run_M(m, X):
         crs_Q_t_10 = axis_x_crs_axes3_z*crs_d_G_in_axes3_zx + axis_z_crs_axes3_z*crs_Q_t_4
         crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_8
         crs_Q_xx = 2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
+        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
+        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
+        crs_Q_t_13 = (
+        crs_Q_xx + crs_Q_yy + crs_d_c_in_axes3_xx + crs_d_c_in_axes3_yy + crs_d_c_in_axes3_zz
+        )
         crs_Q_xy = (
         axis_y_crs_axes3_x*crs_Q_t_6 + axis_y_crs_axes3_y*crs_Q_t_5 + axis_z_crs_axes3_x*crs_Q_t_9
             + axis_z_crs_axes3_y*crs_Q_t_8
@@ -2705,37 +2711,30 @@ def _run_M(m, X):
         axis_y_crs_axes3_x*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_5 +
             axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8
         )
-        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 + axis_z_crs_axes3_y*crs_Q_t_9
-        crs_Q_yy = 2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
         crs_Q_yz = (
         axis_y_crs_axes3_y*crs_Q_t_7 + axis_y_crs_axes3_z*crs_Q_t_6 +
             axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9
         )
-        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 + axis_z_crs_axes3_z*crs_Q_t_10
-        crs_Q_zz = 2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        crs_M_ta_t = crs_Q_xy*crs_q_z
-        crs_M_ta_t_2 = crs_Q_xz*crs_q_y
-        crs_M_ta_t_3 = crs_M_ta_t_2 - crs_M_ta_t
-        crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
-        crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
-        crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
-        crs_M_ta_t_7 = crs_Q_yz*crs_q_x
-        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
-        crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
-        crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
-        crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
-        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
+        crs_M_ta_t = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
+        crs_M_ta_t_2 = crs_Q_xx*crs_q_y - crs_Q_xy*crs_q_x
+        crs_M_ta_t_3 = crs_Q_yy*crs_q_z - crs_Q_yz*crs_q_y
+        crs_M_ta_t_4 = crs_Q_yz*crs_q_x
+        crs_M_ta_t_5 = crs_Q_xy*crs_q_z - crs_M_ta_t_4
+        crs_M_ta_t_6 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
+        crs_M_ta_t_7 = crs_Q_t_13*crs_q_y + crs_Q_yz*crs_q_z
+        crs_M_ta_t_8 = crs_Q_t_13*crs_q_x + crs_Q_xz*crs_q_z
+        crs_M_ta_t_9 = crs_M_ta_t_4 - crs_Q_xz*crs_q_y
         # (M_aa) rotational block of M
-        crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
-        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y - crs_M_ta_t_8*crs_q_z
-        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
-        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
-        crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
-        crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y
+        crs_M_aa_t = crs_M_ta_t_3*crs_q_z - crs_M_ta_t_7*crs_q_y
+        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_y - crs_M_ta_t_5*crs_q_z
+        crs_M_aa_t_3 = crs_M_ta_t_9*crs_q_y - crs_M_ta_t_6*crs_q_z
+        crs_M_aa_t_4 = crs_M_ta_t*crs_q_z - crs_M_ta_t_8*crs_q_x
+        crs_M_aa_t_5 = crs_M_ta_t_2*crs_q_z + crs_M_ta_t_9*crs_q_x
+        crs_M_aa_t_6 = crs_M_ta_t_2*crs_q_y + crs_M_ta_t_6*crs_q_x
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (M_tt) translational block of M
@@ -2744,41 +2743,41 @@ def _run_M(m, X):
         M_tt_xz += crs_Q_xz
         M_tt_crs_yy += crs_Q_yy
         M_tt_yz += crs_Q_yz
-        M_tt_crs_zz += crs_Q_zz
+        M_tt_t += crs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += crs_M_ta_t_3
-        M_ta_crs_xy += crs_M_ta_t_4
-        M_ta_crs_xz += crs_M_ta_t_5
-        M_ta_crs_yx += crs_M_ta_t_6
-        M_ta_yy += crs_M_ta_t_8
-        M_ta_crs_yz += crs_M_ta_t_9
-        M_ta_crs_zx += crs_M_ta_t_10
-        M_ta_crs_zy += crs_M_ta_t_11
-        M_ta_zz += crs_M_ta_t_12
+        M_ta_yy += crs_M_ta_t_5
+        M_ta_zz += crs_M_ta_t_9
+        M_ta_crs_xy += crs_M_ta_t
+        M_ta_t += crs_M_ta_t_2
+        M_ta_t_2 += crs_M_ta_t_3
+        M_ta_crs_yz += crs_M_ta_t_6
+        M_ta_t_3 += crs_M_ta_t_7
+        M_ta_crs_zy += crs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_crs_xx += crs_M_aa_t
         M_aa_crs_xy += crs_M_aa_t_2
         M_aa_crs_xz += crs_M_aa_t_3
         M_aa_crs_yy += crs_M_aa_t_4
-        M_aa_crs_yz += crs_M_aa_t_5
+        M_aa_t += crs_M_aa_t_5
         M_aa_crs_zz += crs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_crs_xx + m_star
     M_tt_yy = M_tt_crs_yy + m_star
-    M_tt_zz = M_tt_crs_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_crs_xy + h_star_z
-    M_ta_xz = M_ta_crs_xz - h_star_y
-    M_ta_yx = M_ta_crs_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_crs_yz + h_star_x
-    M_ta_zx = M_ta_crs_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_crs_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_crs_xx
     M_aa_xy = J_star_xy + M_aa_crs_xy
     M_aa_xz = J_star_xz + M_aa_crs_xz
     M_aa_yy = J_star_yy + M_aa_crs_yy
-    M_aa_yz = J_star_yz + M_aa_crs_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_crs_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -2822,14 +2821,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 678 mul, 507 add, 9 div, 6 sqrt, 0 trig
+# Z: 669 mul, 501 add, 9 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2894,13 +2893,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2975,15 +2973,15 @@ def _run_Z(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -3013,7 +3011,7 @@ def _run_Z(m, X, V):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -3025,7 +3023,7 @@ def _run_Z(m, X, V):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
@@ -3078,7 +3076,7 @@ def _run_Z(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
+        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
             crs_h_3_t_13*crs_rel_o_in_axes3_x)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
@@ -3154,7 +3152,7 @@ def _run_Z(m, X, V):
         crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
         # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
-        inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
+        inv_crs_v_3_in_axes1_x*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_o_in_axes3_x = (
         crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
@@ -3189,7 +3187,7 @@ def _run_Z(m, X, V):
         crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (Z_t) translational part of Z
@@ -3219,7 +3217,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 255 mul, 156 add, 9 div, 6 sqrt, 0 trig
+# H: 249 mul, 150 add, 9 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3308,15 +3306,15 @@ def _run_H(m, X):
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
         crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -3349,8 +3347,8 @@ def _run_H(m, X):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
@@ -3366,7 +3364,7 @@ def _run_H(m, X):
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (crs-w_1) reciprocal vector 1
@@ -3388,7 +3386,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 774 mul, 579 add, 9 div, 6 sqrt, 0 trig
+# required: 759 mul, 567 add, 9 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3486,9 +3484,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3512,27 +3507,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_crs_x, R_a_crs_y, R_a_crs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -3593,15 +3585,15 @@ def _run_required(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -3634,8 +3626,8 @@ def _run_required(m, X, V, A):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
@@ -3652,7 +3644,7 @@ def _run_required(m, X, V, A):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
@@ -3708,7 +3700,7 @@ def _run_required(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
             crs_h_3_t_13*crs_rel_in_axes3_x)
         )
         crs_qdd_2 = (
@@ -3777,7 +3769,7 @@ def _run_required(m, X, V, A):
         crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
         crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
         crs_c_t_4 = (
-        inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
+        inv_crs_v_3_in_axes1_x*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_in_axes3_x = (
         crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
@@ -3818,7 +3810,7 @@ def _run_required(m, X, V, A):
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (R_t) force that actuators and external wrench must give
@@ -3968,7 +3960,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 180 mul, 132 add, 9 div, 6 sqrt, 0 trig
+# joint_rates: 174 mul, 126 add, 9 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4077,19 +4069,19 @@ def _run_joint_rates(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -4101,14 +4093,14 @@ def _run_joint_rates(m, X, V):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (crs-qd_1) rate of joint 1
@@ -4120,7 +4112,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 396 mul, 267 add, 9 div, 6 sqrt, 0 trig
+# joint_accelerations: 390 mul, 261 add, 9 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4259,15 +4251,15 @@ def _run_joint_accelerations(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -4297,7 +4289,7 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -4309,7 +4301,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
@@ -4363,7 +4355,7 @@ def _run_joint_accelerations(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
             crs_h_3_t_13*crs_rel_in_axes3_x)
         )
         crs_qdd_2 = (
@@ -4372,7 +4364,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (crs-qdd_1) acceleration of joint 1
@@ -4384,7 +4376,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 642 mul, 471 add, 9 div, 6 sqrt, 0 trig
+# legs: 636 mul, 465 add, 9 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4528,15 +4520,15 @@ def _run_legs(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -4569,8 +4561,8 @@ def _run_legs(m, X, V, A):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
@@ -4587,7 +4579,7 @@ def _run_legs(m, X, V, A):
         )
         crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
         # (crs-qd_2) rate of joint 2
-        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        crs_qd_2_t = inv_crs_v_3_in_axes1_x*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
         crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
@@ -4643,7 +4635,7 @@ def _run_legs(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_d_4_in_axes1_z*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
+        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
             crs_h_3_t_13*crs_rel_in_axes3_x)
         )
         crs_qdd_2 = (
@@ -4712,7 +4704,7 @@ def _run_legs(m, X, V, A):
         crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
         crs_c_t_3 = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2)
         crs_c_t_4 = (
-        inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
+        inv_crs_v_3_in_axes1_x*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_in_axes1_x)
         )
         crs_c_in_axes3_x = (
         crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
@@ -4745,7 +4737,7 @@ def _run_legs(m, X, V, A):
         )
         ok = (
         ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         # (crs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -4895,7 +4887,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 274 mul, 180 add, 9 div, 10 sqrt, 0 trig
+# condition: 268 mul, 174 add, 9 div, 10 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4994,15 +4986,15 @@ def _run_condition(m, X):
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
         crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_d_4_in_axes1_z = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
         crs_v_1_in_axes3_z = (
-        crs_e_1_in_axes3_x*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_r_1_in_axes1_z) + crs_h_3_t_13*(crs_e_1_in_axes3_x*crs_r_1_in_axes1_z
-            + crs_h_3_t_13*crs_r_1_in_axes1_x)
+        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
         )
+        # (crs-v_3) velocity of the connection point per rate of joint 3
+        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -5035,8 +5027,8 @@ def _run_condition(m, X):
         axis_x_crs_axes3_z = (
         axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
         )
-        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
-        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z
+        inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
+        crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
         crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
         crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
@@ -5045,7 +5037,7 @@ def _run_condition(m, X):
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         crs_pivot_size = abs(crs_h_3_t_7)
         crs_pivot_size_2 = abs(crs_v_1_in_axes3_z)
-        crs_pivot_size_3 = abs(crs_d_4_in_axes1_z)
+        crs_pivot_size_3 = abs(crs_v_3_in_axes1_x)
         crs_least_pivots = (
         least(least(sqrt(crs_pivot_size*inv_crs_size_t_2), crs_pivot_size_2*inv_crs_size),
             crs_pivot_size_3*inv_crs_size)
@@ -5067,7 +5059,7 @@ def _run_condition(m, X):
         )
         clear = (
         clear & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
-            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
         reached = reached & (crs_h_3_t_10 >= 0.0)

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -701,14 +712,13 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_Q_t_3 = prps_Q_t*prps_base_frame_yz;
         const real prps_Q_t_4 = prps_Q_t*prps_base_frame_zz;
         const real prps_Q_t_5 = prps_Q_t_2*prps_base_frame_xz;
-        const real prps_Q_t_6 = prps_Q_t_3*prps_base_frame_xz;
-        const real prps_Q_t_7 = prps_Q_t_2*prps_base_frame_yz;
-        const real prps_Q_t_8 = prps_Q_t_4*prps_base_frame_xz;
-        const real prps_Q_t_9 = prps_Q_t_2*prps_base_frame_zz;
-        const real prps_Q_t_10 = prps_Q_t_3*prps_base_frame_yz;
+        const real prps_Q_t_6 = prps_Q_t_3*prps_base_frame_yz;
+        const real prps_Q_t_7 = prps_Q_t_3*prps_base_frame_xz;
+        const real prps_Q_t_8 = prps_Q_t_2*prps_base_frame_yz;
+        const real prps_Q_t_9 = prps_Q_t_4*prps_base_frame_xz;
+        const real prps_Q_t_10 = prps_Q_t_2*prps_base_frame_zz;
         const real prps_Q_t_11 = prps_Q_t_4*prps_base_frame_yz;
         const real prps_Q_t_12 = prps_Q_t_3*prps_base_frame_zz;
-        const real prps_Q_t_13 = prps_Q_t_4*prps_base_frame_zz;
         /* (h_star) */
         const real prps_h_star_t = prps_link3_mass*prps_platform_point_x;
         const real prps_h_star_t_2 = prps_link3_mass*prps_platform_point_y;
@@ -736,10 +746,10 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_potential_t_3 = prps_b_in_axes0_x*prps_link2_mass;
         const real prps_potential_t_4 = prps_b_in_axes0_y*prps_link2_mass;
         KEEP_OF_LEG(prps_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(prps_P_c_1_in_axes0_z);
         KEEP_OF_LEG(prps_Q_t_10);
         KEEP_OF_LEG(prps_Q_t_11);
         KEEP_OF_LEG(prps_Q_t_12);
-        KEEP_OF_LEG(prps_Q_t_13);
         KEEP_OF_LEG(prps_Q_t_5);
         KEEP_OF_LEG(prps_Q_t_6);
         KEEP_OF_LEG(prps_Q_t_7);
@@ -818,6 +828,8 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -834,6 +846,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1387,8 +1400,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1458,16 +1471,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1499,7 +1511,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1516,13 +1528,12 @@ typedef struct {
         prps_H_a_3_x, prps_H_a_3_y, prps_H_a_3_z, prps_S_dot_t, prps_S_dot_t_2, prps_S_dot_t_3,
         prps_S_dot_x, prps_S_dot_y, prps_S_dot_z, prps_S_dot_in_axes2_x, prps_qd_2,
         prps_W_2_in_axes2_xx, prps_bias_in_axes2_y, prps_phi_3_t, prps_c_t, prps_S_ddot_in_axes2_x,
-        prps_S_ddot_in_axes2_y, prps_S_ddot_in_axes2_z, prps_qdd_2, prps_Q_xx, prps_Q_xy, prps_Q_xz,
-        prps_Q_yy, prps_Q_yz, prps_Q_zz, prps_M_ta_t_3, prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6,
-        prps_M_ta_t_8, prps_M_ta_t_9, prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t,
-        prps_M_aa_t_2, prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_U_x, prps_U_y,
-        prps_U_z, prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3, prps_acc_1_in_axes0_z,
-        prps_acc_3_in_axes2_x, prps_acc_3_in_axes2_y, prps_phi_3_in_axes2_x, prps_T_1_in_axes0_z,
-        prps_c_in_axes2_y;
+        prps_S_ddot_in_axes2_y, prps_S_ddot_in_axes2_z, prps_qdd_2, prps_Q_xx, prps_Q_yy, prps_Q_zz,
+        prps_Q_xy, prps_Q_xz, prps_Q_yz, prps_M_ta_t, prps_M_ta_t_2, prps_M_ta_t_3, prps_M_ta_t_5,
+        prps_M_ta_t_6, prps_M_ta_t_7, prps_M_ta_t_8, prps_M_ta_t_9, prps_M_aa_t, prps_M_aa_t_2,
+        prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_U_x, prps_U_y, prps_U_z,
+        prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3, prps_acc_1_in_axes0_z, prps_acc_3_in_axes2_x,
+        prps_acc_3_in_axes2_y, prps_phi_3_in_axes2_x, prps_T_1_in_axes0_z, prps_c_in_axes2_y;
 } values_prps;
 
 INLINE void stage_prps_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1682,38 +1693,35 @@ INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
         v->axis_y_prps_axes2_y*prps_Q_t;
     const real prps_Q_t_4 = v->axis_x_prps_axes2_z*prps_d_c_in_axes2_xy +
         v->axis_y_prps_axes2_z*prps_Q_t;
-    const real prps_Q_t_14 = v->axis_y_prps_axes2_x*prps_Q_t_2 - m->prps_Q_t_5[i];
-    v->prps_Q_xx = -2*prps_Q_t_14;
-    v->prps_Q_xy = m->prps_Q_t_6[i] + m->prps_Q_t_7[i] - v->axis_y_prps_axes2_x*prps_Q_t_3 -
+    const real prps_Q_t_13 = v->axis_y_prps_axes2_x*prps_Q_t_2 - m->prps_Q_t_5[i];
+    v->prps_Q_xx = -2*prps_Q_t_13;
+    const real prps_Q_t_14 = v->axis_y_prps_axes2_y*prps_Q_t_3 - m->prps_Q_t_6[i];
+    v->prps_Q_yy = -2*prps_Q_t_14;
+    v->prps_Q_zz = m->prps_P_c_1_in_axes0_z[i] - prps_d_c_in_axes2_yy - v->prps_Q_xx -
+        v->prps_Q_yy;
+    v->prps_Q_xy = m->prps_Q_t_7[i] + m->prps_Q_t_8[i] - v->axis_y_prps_axes2_x*prps_Q_t_3 -
         v->axis_y_prps_axes2_y*prps_Q_t_2;
-    v->prps_Q_xz = m->prps_Q_t_8[i] + m->prps_Q_t_9[i] - v->axis_y_prps_axes2_x*prps_Q_t_4 -
+    v->prps_Q_xz = m->prps_Q_t_10[i] + m->prps_Q_t_9[i] - v->axis_y_prps_axes2_x*prps_Q_t_4 -
         v->axis_y_prps_axes2_z*prps_Q_t_2;
-    const real prps_Q_t_15 = v->axis_y_prps_axes2_y*prps_Q_t_3 - m->prps_Q_t_10[i];
-    v->prps_Q_yy = -2*prps_Q_t_15;
     v->prps_Q_yz = m->prps_Q_t_11[i] + m->prps_Q_t_12[i] - v->axis_y_prps_axes2_y*prps_Q_t_4 -
         v->axis_y_prps_axes2_z*prps_Q_t_3;
-    const real prps_Q_t_16 = v->axis_y_prps_axes2_z*prps_Q_t_4 - m->prps_Q_t_13[i];
-    v->prps_Q_zz = -2*prps_Q_t_16;
     /* (M_ta) coupling block of M */
-    const real prps_M_ta_t = -v->prps_Q_xy*v->prps_q_z;
-    const real prps_M_ta_t_2 = v->prps_Q_xz*v->prps_q_y;
-    v->prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2;
-    v->prps_M_ta_t_4 = v->prps_Q_xx*v->prps_q_z - v->prps_Q_xz*v->prps_q_x;
-    v->prps_M_ta_t_5 = v->prps_Q_xy*v->prps_q_x - v->prps_Q_xx*v->prps_q_y;
-    v->prps_M_ta_t_6 = v->prps_Q_yz*v->prps_q_y - v->prps_Q_yy*v->prps_q_z;
-    const real prps_M_ta_t_7 = v->prps_Q_yz*v->prps_q_x;
-    v->prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7;
-    v->prps_M_ta_t_9 = v->prps_Q_yy*v->prps_q_x - v->prps_Q_xy*v->prps_q_y;
-    v->prps_M_ta_t_10 = v->prps_Q_zz*v->prps_q_y - v->prps_Q_yz*v->prps_q_z;
-    v->prps_M_ta_t_11 = v->prps_Q_xz*v->prps_q_z - v->prps_Q_zz*v->prps_q_x;
-    v->prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2;
+    v->prps_M_ta_t = v->prps_Q_xz*v->prps_q_x - v->prps_Q_xx*v->prps_q_z;
+    v->prps_M_ta_t_2 = v->prps_Q_xy*v->prps_q_x - v->prps_Q_xx*v->prps_q_y;
+    v->prps_M_ta_t_3 = v->prps_Q_yz*v->prps_q_y - v->prps_Q_yy*v->prps_q_z;
+    const real prps_M_ta_t_4 = v->prps_Q_yz*v->prps_q_x;
+    v->prps_M_ta_t_5 = v->prps_Q_xy*v->prps_q_z - prps_M_ta_t_4;
+    v->prps_M_ta_t_6 = v->prps_Q_yy*v->prps_q_x - v->prps_Q_xy*v->prps_q_y;
+    v->prps_M_ta_t_7 = v->prps_Q_zz*v->prps_q_y - v->prps_Q_yz*v->prps_q_z;
+    v->prps_M_ta_t_8 = v->prps_Q_xz*v->prps_q_z - v->prps_Q_zz*v->prps_q_x;
+    v->prps_M_ta_t_9 = v->prps_Q_xz*v->prps_q_y - prps_M_ta_t_4;
     /* (M_aa) rotational block of M */
-    v->prps_M_aa_t = v->prps_M_ta_t_10*v->prps_q_y - v->prps_M_ta_t_6*v->prps_q_z;
-    v->prps_M_aa_t_2 = v->prps_M_ta_t_11*v->prps_q_y + v->prps_M_ta_t_8*v->prps_q_z;
-    v->prps_M_aa_t_3 = v->prps_M_ta_t_12*v->prps_q_y - v->prps_M_ta_t_9*v->prps_q_z;
-    v->prps_M_aa_t_4 = v->prps_M_ta_t_4*v->prps_q_z - v->prps_M_ta_t_11*v->prps_q_x;
-    v->prps_M_aa_t_5 = v->prps_M_ta_t_5*v->prps_q_z - v->prps_M_ta_t_12*v->prps_q_x;
-    v->prps_M_aa_t_6 = v->prps_M_ta_t_9*v->prps_q_x - v->prps_M_ta_t_5*v->prps_q_y;
+    v->prps_M_aa_t = v->prps_M_ta_t_7*v->prps_q_y - v->prps_M_ta_t_3*v->prps_q_z;
+    v->prps_M_aa_t_2 = v->prps_M_ta_t_8*v->prps_q_y - v->prps_M_ta_t_5*v->prps_q_z;
+    v->prps_M_aa_t_3 = v->prps_M_ta_t_6*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_y;
+    v->prps_M_aa_t_4 = v->prps_M_ta_t*v->prps_q_z + v->prps_M_ta_t_8*v->prps_q_x;
+    v->prps_M_aa_t_5 = v->prps_M_ta_t_2*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_x;
+    v->prps_M_aa_t_6 = v->prps_M_ta_t_6*v->prps_q_x - v->prps_M_ta_t_2*v->prps_q_y;
 }
 
 INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1797,11 +1805,8 @@ INLINE void stage_prps_legs_required(const prepared *m, size_t i, values_prps *v
         v->inv_prps_q_3*prps_mu_2_in_axes2_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1817,14 +1822,84 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[2*i*w + k] = o[0*count + at];
+    H[(NU + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 2*i)*w + k] = o[5*count + at];
+    H[(1 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
+    t->singular[k] += o[12*count + at];
+    t->total[k] += o[13*count + at];
+}
+
+INLINE void any_place_prps_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -1853,30 +1928,29 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[4*count + k], add, v.prps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.prps_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.prps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.prps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, -v.prps_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.prps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.prps_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.prps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v.prps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.prps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.prps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.prps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prps_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.prps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.prps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.prps_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.prps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.prps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.prps_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.prps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.prps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.prps_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.prps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.prps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.prps_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (prps-w_1) reciprocal vector 1 */
     o[0*count + k] = m->prps_base_frame_xz[i];
     o[1*count + k] = m->prps_base_frame_yz[i];
@@ -1901,25 +1975,6 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
         > LEAST_2);
 }
 
-INLINE void dynamics_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->singular[k] += o[12*count + at];
-    t->total[k] += o[13*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -1931,13 +1986,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -1948,41 +2006,41 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -1999,7 +2057,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2008,7 +2065,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2017,7 +2073,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2047,17 +2102,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_prps[27*LEGS(LEGS_OF_prps)] = {0}, o_prps[14*LEGS(LEGS_OF_prps)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_prps[26*LEGS(LEGS_OF_prps)] CLEARED, o_prps[14*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         dynamics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
-        dynamics_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, H, t);
+        any_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2067,20 +2122,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_prps[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prps);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
+            any_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2089,31 +2144,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2128,29 +2158,23 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[4*count + k], add, v.prps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.prps_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.prps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.prps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, -v.prps_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.prps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.prps_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.prps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v.prps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.prps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.prps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.prps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prps_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
-}
-
-INLINE void M_place_prps(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2164,13 +2188,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2181,22 +2208,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2212,7 +2239,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2221,7 +2247,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2230,7 +2255,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2251,17 +2275,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_prps[21*LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_prps[20*LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         M_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
-        M_place_prps(0, i, LEGS(LEGS_OF_prps), o_prps, t);
+        any_place_prps_2(0, i, LEGS(LEGS_OF_prps), o_prps, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2270,19 +2294,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_prps[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prps);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_prps(k, k, LANES, o_prps, t);
+            any_place_prps_2(k, k, LANES, o_prps, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2291,22 +2315,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2335,11 +2343,6 @@ INLINE void Z_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[5*count + k], add, v.prps_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
-}
-
-INLINE void Z_place_prps(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2377,15 +2380,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_prps[6*LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_prps[6*LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         Z_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
-        Z_place_prps(0, i, LEGS(LEGS_OF_prps), o_prps, t);
+        any_place_prps_2(0, i, LEGS(LEGS_OF_prps), o_prps, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
@@ -2401,7 +2404,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_prps[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2410,7 +2413,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prps);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_prps(k, k, LANES, o_prps, t);
+            any_place_prps_2(k, k, LANES, o_prps, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2419,22 +2422,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2464,36 +2451,17 @@ INLINE void H_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
         > LEAST_2);
 }
 
-INLINE void H_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->singular[k] += o[12*count + at];
-    t->total[k] += o[13*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prps[14*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED;
+    real o_prps[14*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         H_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
-        H_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, H, t);
+        any_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, H, t);
     }
 }
 
@@ -2504,46 +2472,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_prps[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prps(m, LANES, i, k, k, LANES, s, X, o_prps);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
+            any_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2554,9 +2495,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -2586,27 +2524,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -2720,12 +2655,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_prps[6*LEGS(LEGS_OF_prps)] = {0}, o_prps[13*LEGS(LEGS_OF_prps)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_prps[6*LEGS(LEGS_OF_prps)] CLEARED, o_prps[13*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
-        required_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, A, terms_prps, o_prps);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
+            required_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), 0, s, X, V, A,
+                terms_prps, o_prps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         required_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, H, t);
@@ -2744,7 +2682,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_prps[13*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2762,22 +2700,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
@@ -2811,10 +2733,10 @@ INLINE void inverse_kinematics_place_prps(size_t w, size_t i, size_t k, size_t a
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED;
+    real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         inverse_kinematics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
@@ -2830,7 +2752,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2843,22 +2765,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2892,10 +2798,10 @@ INLINE void joint_rates_place_prps(size_t w, size_t i, size_t k, size_t at, size
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED;
+    real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_rates_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, o_prps);
     }
@@ -2911,7 +2817,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2924,33 +2830,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2985,10 +2864,10 @@ INLINE void joint_accelerations_place_prps(size_t w, size_t i, size_t k, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prps[5*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED;
+    real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_accelerations_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
     }
@@ -3004,7 +2883,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_prps[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3017,33 +2896,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3102,12 +2954,14 @@ INLINE void legs_place_prps(size_t w, size_t i, size_t k, size_t at, size_t coun
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prps[10*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED;
+    real o_prps[10*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
-        legs_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
+            legs_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
         legs_place_prps(1, i, 0, i, LEGS(LEGS_OF_prps), o_prps, leg_force, actuator, t);
@@ -3115,22 +2969,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3171,12 +3009,6 @@ INLINE void potential_legs_prps(const prepared *m, size_t w, size_t i, size_t j,
         > LEAST_2);
 }
 
-INLINE void potential_place_prps(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3189,15 +3021,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_prps[LEGS(LEGS_OF_prps)] = {0}, o_prps[LEGS(LEGS_OF_prps)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_prps[LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
-        potential_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
+            potential_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps,
+                o_prps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
-        potential_place_prps(0, i, LEGS(LEGS_OF_prps), o_prps, t);
+        any_place_prps_2(0, i, LEGS(LEGS_OF_prps), o_prps, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prps + n*LEGS(LEGS_OF_prps), LEGS_OF_prps);
@@ -3305,8 +3140,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_prps[LEGS(LEGS_OF_prps)] = {0}, o_prps[15*LEGS(LEGS_OF_prps)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_prps[LEGS(LEGS_OF_prps)] CLEARED, o_prps[15*LEGS(LEGS_OF_prps)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3678,7 +3513,7 @@ int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -3727,8 +3562,8 @@ int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3797,7 +3632,7 @@ int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3814,7 +3649,7 @@ int hybrid_3prps_leg_reactions(const prepared *m, const real *X, const real *V, 
 int hybrid_3prps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3835,8 +3670,8 @@ int hybrid_3prps_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3867,9 +3702,9 @@ int hybrid_3prps_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3901,9 +3736,9 @@ int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3934,7 +3769,7 @@ int hybrid_3prps_singularity_distance(const prepared *m, const real *X, real *ac
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[6] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4019,7 +3854,7 @@ int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4032,7 +3867,7 @@ int hybrid_3prps_dissipation(const prepared *m, const real *X, const real *V, re
 
 int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4044,7 +3879,7 @@ int hybrid_3prps_momentum(const prepared *m, const real *X, const real *V, real 
 int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4059,7 +3894,7 @@ int hybrid_3prps_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4073,7 +3908,7 @@ int hybrid_3prps_within_limits(const prepared *m, const real *X, real *within_ou
 
 int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4084,7 +3919,7 @@ int hybrid_3prps_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4096,7 +3931,7 @@ int hybrid_3prps_actuator_rates(const prepared *m, const real *X, const real *V,
 int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4108,7 +3943,7 @@ int hybrid_3prps_actuator_accelerations(const prepared *m, const real *X, const 
 int hybrid_3prps_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4168,7 +4003,7 @@ int hybrid_3prps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4184,7 +4019,7 @@ int hybrid_3prps_retract(const real *X, const real *step, real *X_moved_out)
 
 int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4200,7 +4035,8 @@ int hybrid_3prps_difference(const real *X0, const real *X1, real *step_out)
 
 int hybrid_3prps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

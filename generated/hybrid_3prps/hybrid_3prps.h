@@ -105,22 +105,22 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type prps; copies of the first fill up */
-    hybrid_3prps_real prps_Jc_2_in_axes2_zz[4], prps_Q_t_10[4], prps_Q_t_11[4], prps_Q_t_12[4],
-            prps_Q_t_13[4], prps_Q_t_5[4], prps_Q_t_6[4], prps_Q_t_7[4], prps_Q_t_8[4], prps_Q_t_9[4],
-            prps_b_in_axes0_z[4], prps_base_frame_xx[4], prps_base_frame_xy[4], prps_base_frame_xz[4],
-            prps_base_frame_yx[4], prps_base_frame_yy[4], prps_base_frame_yz[4],
-            prps_base_frame_zx[4], prps_base_frame_zy[4], prps_base_frame_zz[4], prps_base_point_x[4],
-            prps_base_point_y[4], prps_base_point_z[4], prps_branch_2[4], prps_g_in_axes0_x[4],
-            prps_g_in_axes0_y[4], prps_g_in_axes0_z[4], prps_h_1_in_spec0_x[4],
-            prps_h_1_in_spec0_y[4], prps_h_1_in_spec0_z[4], prps_h_2_in_spec2_x[4],
-            prps_h_2_in_spec2_y[4], prps_h_2_in_spec2_z[4], prps_h_3_in_spec2_x[4],
-            prps_h_3_in_spec2_y[4], prps_h_3_in_spec2_z[4], prps_link1_mass[4], prps_link2_mass[4],
-            prps_link3_mass[4], prps_platform_point_x[4], prps_platform_point_y[4],
-            prps_platform_point_z[4], prps_potential_t[4], prps_potential_t_2[4],
-            prps_potential_t_3[4], prps_potential_t_4[4];
+    hybrid_3prps_real prps_Jc_2_in_axes2_zz[4], prps_P_c_1_in_axes0_z[4], prps_Q_t_10[4],
+            prps_Q_t_11[4], prps_Q_t_12[4], prps_Q_t_5[4], prps_Q_t_6[4], prps_Q_t_7[4],
+            prps_Q_t_8[4], prps_Q_t_9[4], prps_b_in_axes0_z[4], prps_base_frame_xx[4],
+            prps_base_frame_xy[4], prps_base_frame_xz[4], prps_base_frame_yx[4],
+            prps_base_frame_yy[4], prps_base_frame_yz[4], prps_base_frame_zx[4],
+            prps_base_frame_zy[4], prps_base_frame_zz[4], prps_base_point_x[4], prps_base_point_y[4],
+            prps_base_point_z[4], prps_branch_2[4], prps_g_in_axes0_x[4], prps_g_in_axes0_y[4],
+            prps_g_in_axes0_z[4], prps_h_1_in_spec0_x[4], prps_h_1_in_spec0_y[4],
+            prps_h_1_in_spec0_z[4], prps_h_2_in_spec2_x[4], prps_h_2_in_spec2_y[4],
+            prps_h_2_in_spec2_z[4], prps_h_3_in_spec2_x[4], prps_h_3_in_spec2_y[4],
+            prps_h_3_in_spec2_z[4], prps_link1_mass[4], prps_link2_mass[4], prps_link3_mass[4],
+            prps_platform_point_x[4], prps_platform_point_y[4], prps_platform_point_z[4],
+            prps_potential_t[4], prps_potential_t_2[4], prps_potential_t_3[4], prps_potential_t_4[4];
     hybrid_3prps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hybrid_3prps_model;
@@ -139,13 +139,13 @@ extern const char *const hybrid_3prps_ACTUATOR_NAMES[HYBRID_3PRPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *model);
 
-/* Inertia matrix M. 291 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 282 mul, 274 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3prps_M(const hybrid_3prps_model *model, const hybrid_3prps_real *X, hybrid_3prps_real
     *M);
 size_t hybrid_3prps_M_batch(const hybrid_3prps_model *model, size_t n, const hybrid_3prps_real *X,
     hybrid_3prps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 363 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 360 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int hybrid_3prps_Z(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *Z);
@@ -181,7 +181,7 @@ size_t hybrid_3prps_joint_accelerations_batch(const hybrid_3prps_model *model, s
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A,
     hybrid_3prps_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 549 mul, 465 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 540 mul, 466 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3prps_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z, hybrid_3prps_real *H);
@@ -189,7 +189,7 @@ size_t hybrid_3prps_dynamics_batch(const hybrid_3prps_model *model, size_t n, co
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *M, hybrid_3prps_real *Z,
     hybrid_3prps_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 423 mul, 330 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 414 mul, 324 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int hybrid_3prps_inverse_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
@@ -199,7 +199,7 @@ size_t hybrid_3prps_inverse_dynamics_batch(const hybrid_3prps_model *model, size
     hybrid_3prps_real *X, const hybrid_3prps_real *V, const hybrid_3prps_real *A, const
     hybrid_3prps_real *wrench, hybrid_3prps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 549 mul, 465 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 540 mul, 466 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int hybrid_3prps_forward_dynamics(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
@@ -278,7 +278,7 @@ int hybrid_3prps_dissipation(const hybrid_3prps_model *model, const hybrid_3prps
 size_t hybrid_3prps_dissipation_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, const hybrid_3prps_real *V, hybrid_3prps_real *dissipation, int *status);
 
-/* Generalised momentum M V. 291 mul, 273 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 282 mul, 274 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3prps_momentum(const hybrid_3prps_model *model, const hybrid_3prps_real *X, const
     hybrid_3prps_real *V, hybrid_3prps_real *momentum);

@@ -590,14 +590,13 @@ def _prepare(p):
     prps_Q_t_3 = prps_Q_t*prps_base_frame_yz
     prps_Q_t_4 = prps_Q_t*prps_base_frame_zz
     prps_Q_t_5 = prps_Q_t_2*prps_base_frame_xz
-    prps_Q_t_6 = prps_Q_t_3*prps_base_frame_xz
-    prps_Q_t_7 = prps_Q_t_2*prps_base_frame_yz
-    prps_Q_t_8 = prps_Q_t_4*prps_base_frame_xz
-    prps_Q_t_9 = prps_Q_t_2*prps_base_frame_zz
-    prps_Q_t_10 = prps_Q_t_3*prps_base_frame_yz
+    prps_Q_t_6 = prps_Q_t_3*prps_base_frame_yz
+    prps_Q_t_7 = prps_Q_t_3*prps_base_frame_xz
+    prps_Q_t_8 = prps_Q_t_2*prps_base_frame_yz
+    prps_Q_t_9 = prps_Q_t_4*prps_base_frame_xz
+    prps_Q_t_10 = prps_Q_t_2*prps_base_frame_zz
     prps_Q_t_11 = prps_Q_t_4*prps_base_frame_yz
     prps_Q_t_12 = prps_Q_t_3*prps_base_frame_zz
-    prps_Q_t_13 = prps_Q_t_4*prps_base_frame_zz
     # (h_star) first moment about the platform origin
     prps_h_star_t = prps_link3_mass*prps_platform_point_x
     prps_h_star_t_2 = prps_link3_mass*prps_platform_point_y
@@ -660,6 +659,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -671,43 +671,45 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
-                    prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
-                    prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-                    prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
-                    prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
-                    prps_g_in_axes0_z, prps_h_2_in_spec2_x, prps_h_2_in_spec2_y,
-                    prps_h_3_in_spec2_x, prps_h_3_in_spec2_y, prps_link1_mass, prps_link2_mass,
-                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
+        (prps_Jc_2_in_axes2_zz, prps_P_c_1_in_axes0_z, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12,
+                    prps_Q_t_5, prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9,
+                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+                    prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
+                    prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_in_axes0_x,
+                    prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_2_in_spec2_x,
+                    prps_h_2_in_spec2_y, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
+                    prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
-                    prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
-                    prps_base_frame_xy, prps_base_frame_yx, prps_base_frame_yy,
-                    prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x, prps_base_point_y,
-                    prps_base_point_z, prps_branch_2, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
-                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
+        (prps_Jc_2_in_axes2_zz, prps_P_c_1_in_axes0_z, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12,
+                    prps_Q_t_5, prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9,
+                    prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx,
+                    prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x,
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_h_3_in_spec2_x,
+                    prps_h_3_in_spec2_y, prps_platform_point_x, prps_platform_point_y,
+                    prps_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_prps,
         (prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
@@ -1816,14 +1818,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 549 mul, 465 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 540 mul, 466 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1890,13 +1892,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1912,15 +1913,15 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
-        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
-        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
-        Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z,
-    ) = [0.0] * 27
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_yy, M_ta_zz,
+        M_ta_prps_xy, M_ta_prps_xz, M_ta_prps_yx, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_t, M_aa_t_2, M_aa_prps_yz, M_aa_prps_zz, Z_t_prps_x,
+        Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
-        prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
-            prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+        prps_Jc_2_in_axes2_zz, prps_P_c_1_in_axes0_z, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12,
+            prps_Q_t_5, prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
             prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
             prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
             prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_branch_2,
@@ -2042,22 +2043,21 @@ def _run_dynamics(m, X, V):
         prps_Q_t_2 = axis_x_prps_axes2_x*prps_d_c_in_axes2_xy + axis_y_prps_axes2_x*prps_Q_t
         prps_Q_t_3 = axis_x_prps_axes2_y*prps_d_c_in_axes2_xy + axis_y_prps_axes2_y*prps_Q_t
         prps_Q_t_4 = axis_x_prps_axes2_z*prps_d_c_in_axes2_xy + axis_y_prps_axes2_z*prps_Q_t
-        prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
-        prps_Q_xx = -2.0*prps_Q_t_14
+        prps_Q_t_13 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_xx = -2.0*prps_Q_t_13
+        prps_Q_t_14 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_6
+        prps_Q_yy = -2.0*prps_Q_t_14
+        prps_Q_zz = prps_P_c_1_in_axes0_z - prps_Q_xx - prps_Q_yy - prps_d_c_in_axes2_yy
         prps_Q_xy = (
-        prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
+        prps_Q_t_7 + prps_Q_t_8 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
         )
         prps_Q_xz = (
-        prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
+        prps_Q_t_10 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
         )
-        prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10
-        prps_Q_yy = -2.0*prps_Q_t_15
         prps_Q_yz = (
         prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
             axis_y_prps_axes2_z*prps_Q_t_3
         )
-        prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13
-        prps_Q_zz = -2.0*prps_Q_t_16
         # (prps-U) velocity and gravity terms of the leg force
         prps_U_x = (
         axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_xz -
@@ -2072,25 +2072,22 @@ def _run_dynamics(m, X, V):
             axis_y_prps_axes2_z*prps_c_o_in_axes2_y
         )
         # (M_ta) coupling block of M
-        prps_M_ta_t = -prps_Q_xy*prps_q_z
-        prps_M_ta_t_2 = prps_Q_xz*prps_q_y
-        prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2
-        prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x
-        prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
-        prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
-        prps_M_ta_t_7 = prps_Q_yz*prps_q_x
-        prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7
-        prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
-        prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
-        prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
-        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
+        prps_M_ta_t = prps_Q_xz*prps_q_x - prps_Q_xx*prps_q_z
+        prps_M_ta_t_2 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
+        prps_M_ta_t_3 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
+        prps_M_ta_t_4 = prps_Q_yz*prps_q_x
+        prps_M_ta_t_5 = prps_Q_xy*prps_q_z - prps_M_ta_t_4
+        prps_M_ta_t_6 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
+        prps_M_ta_t_7 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
+        prps_M_ta_t_8 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
+        prps_M_ta_t_9 = prps_Q_xz*prps_q_y - prps_M_ta_t_4
         # (M_aa) rotational block of M
-        prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z
-        prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z
-        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z
-        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x
-        prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
-        prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
+        prps_M_aa_t = prps_M_ta_t_7*prps_q_y - prps_M_ta_t_3*prps_q_z
+        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_y - prps_M_ta_t_5*prps_q_z
+        prps_M_aa_t_3 = prps_M_ta_t_6*prps_q_z + prps_M_ta_t_9*prps_q_y
+        prps_M_aa_t_4 = prps_M_ta_t*prps_q_z + prps_M_ta_t_8*prps_q_x
+        prps_M_aa_t_5 = prps_M_ta_t_2*prps_q_z + prps_M_ta_t_9*prps_q_x
+        prps_M_aa_t_6 = prps_M_ta_t_6*prps_q_x - prps_M_ta_t_2*prps_q_y
         # (Z_a) rotational part of Z
         prps_Z_a_t = prps_U_z*prps_q_y - prps_U_y*prps_q_z
         prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x
@@ -2115,20 +2112,19 @@ def _run_dynamics(m, X, V):
         M_tt_yz += prps_Q_yz
         M_tt_prps_zz += prps_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += prps_M_ta_t_3
-        M_ta_prps_xy += prps_M_ta_t_4
-        M_ta_prps_xz += prps_M_ta_t_5
-        M_ta_prps_yx += prps_M_ta_t_6
-        M_ta_yy += -prps_M_ta_t_8
-        M_ta_prps_yz += prps_M_ta_t_9
-        M_ta_prps_zx += prps_M_ta_t_10
-        M_ta_prps_zy += prps_M_ta_t_11
-        M_ta_zz += prps_M_ta_t_12
+        M_ta_yy += prps_M_ta_t_5
+        M_ta_zz += -prps_M_ta_t_9
+        M_ta_prps_xy += -prps_M_ta_t
+        M_ta_prps_xz += prps_M_ta_t_2
+        M_ta_prps_yx += prps_M_ta_t_3
+        M_ta_prps_yz += prps_M_ta_t_6
+        M_ta_prps_zx += prps_M_ta_t_7
+        M_ta_prps_zy += prps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_prps_xx += prps_M_aa_t
         M_aa_prps_xy += prps_M_aa_t_2
-        M_aa_prps_xz += prps_M_aa_t_3
-        M_aa_prps_yy += prps_M_aa_t_4
+        M_aa_t += prps_M_aa_t_3
+        M_aa_t_2 += prps_M_aa_t_4
         M_aa_prps_yz += prps_M_aa_t_5
         M_aa_prps_zz += prps_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2160,6 +2156,7 @@ def _run_dynamics(m, X, V):
     M_tt_yy = M_tt_prps_yy + m_star
     M_tt_zz = M_tt_prps_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_prps_xy + h_star_z
     M_ta_xz = M_ta_prps_xz - h_star_y
     M_ta_yx = M_ta_prps_yx - h_star_z
@@ -2169,8 +2166,8 @@ def _run_dynamics(m, X, V):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_prps_xx
     M_aa_xy = J_star_xy + M_aa_prps_xy
-    M_aa_xz = J_star_xz + M_aa_prps_xz
-    M_aa_yy = J_star_yy + M_aa_prps_yy
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_prps_yz
     M_aa_zz = J_star_zz + M_aa_prps_zz
     # (Z_t) translational part of Z
@@ -2231,13 +2228,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 291 mul, 273 add, 3 div, 3 sqrt, 0 trig
+# M: 282 mul, 274 add, 3 div, 3 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2290,22 +2287,21 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
-        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
-        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
-    ) = [0.0] * 21
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_yy, M_ta_zz,
+        M_ta_prps_xy, M_ta_prps_xz, M_ta_prps_yx, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_t, M_aa_t_2, M_aa_prps_yz, M_aa_prps_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
-        prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
-            prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+        prps_Jc_2_in_axes2_zz, prps_P_c_1_in_axes0_z, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12,
+            prps_Q_t_5, prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
             prps_base_frame_xy, prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx,
             prps_base_frame_zy, prps_base_point_x, prps_base_point_y, prps_base_point_z,
             prps_branch_2, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y, prps_platform_point_x,
@@ -2358,42 +2354,38 @@ def _run_M(m, X):
         prps_Q_t_2 = axis_x_prps_axes2_x*prps_d_c_in_axes2_xy + axis_y_prps_axes2_x*prps_Q_t
         prps_Q_t_3 = axis_x_prps_axes2_y*prps_d_c_in_axes2_xy + axis_y_prps_axes2_y*prps_Q_t
         prps_Q_t_4 = axis_x_prps_axes2_z*prps_d_c_in_axes2_xy + axis_y_prps_axes2_z*prps_Q_t
-        prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
-        prps_Q_xx = -2.0*prps_Q_t_14
+        prps_Q_t_13 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_xx = -2.0*prps_Q_t_13
+        prps_Q_t_14 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_6
+        prps_Q_yy = -2.0*prps_Q_t_14
+        prps_Q_zz = prps_P_c_1_in_axes0_z - prps_Q_xx - prps_Q_yy - prps_d_c_in_axes2_yy
         prps_Q_xy = (
-        prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
+        prps_Q_t_7 + prps_Q_t_8 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
         )
         prps_Q_xz = (
-        prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
+        prps_Q_t_10 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
         )
-        prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10
-        prps_Q_yy = -2.0*prps_Q_t_15
         prps_Q_yz = (
         prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
             axis_y_prps_axes2_z*prps_Q_t_3
         )
-        prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13
-        prps_Q_zz = -2.0*prps_Q_t_16
         # (M_ta) coupling block of M
-        prps_M_ta_t = -prps_Q_xy*prps_q_z
-        prps_M_ta_t_2 = prps_Q_xz*prps_q_y
-        prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2
-        prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x
-        prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
-        prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
-        prps_M_ta_t_7 = prps_Q_yz*prps_q_x
-        prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7
-        prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
-        prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
-        prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
-        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
+        prps_M_ta_t = prps_Q_xz*prps_q_x - prps_Q_xx*prps_q_z
+        prps_M_ta_t_2 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
+        prps_M_ta_t_3 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
+        prps_M_ta_t_4 = prps_Q_yz*prps_q_x
+        prps_M_ta_t_5 = prps_Q_xy*prps_q_z - prps_M_ta_t_4
+        prps_M_ta_t_6 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
+        prps_M_ta_t_7 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
+        prps_M_ta_t_8 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
+        prps_M_ta_t_9 = prps_Q_xz*prps_q_y - prps_M_ta_t_4
         # (M_aa) rotational block of M
-        prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z
-        prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z
-        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z
-        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x
-        prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
-        prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
+        prps_M_aa_t = prps_M_ta_t_7*prps_q_y - prps_M_ta_t_3*prps_q_z
+        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_y - prps_M_ta_t_5*prps_q_z
+        prps_M_aa_t_3 = prps_M_ta_t_6*prps_q_z + prps_M_ta_t_9*prps_q_y
+        prps_M_aa_t_4 = prps_M_ta_t*prps_q_z + prps_M_ta_t_8*prps_q_x
+        prps_M_aa_t_5 = prps_M_ta_t_2*prps_q_z + prps_M_ta_t_9*prps_q_x
+        prps_M_aa_t_6 = prps_M_ta_t_6*prps_q_x - prps_M_ta_t_2*prps_q_y
         ok = (
         ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
             0.75)
@@ -2406,20 +2398,19 @@ def _run_M(m, X):
         M_tt_yz += prps_Q_yz
         M_tt_prps_zz += prps_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += prps_M_ta_t_3
-        M_ta_prps_xy += prps_M_ta_t_4
-        M_ta_prps_xz += prps_M_ta_t_5
-        M_ta_prps_yx += prps_M_ta_t_6
-        M_ta_yy += -prps_M_ta_t_8
-        M_ta_prps_yz += prps_M_ta_t_9
-        M_ta_prps_zx += prps_M_ta_t_10
-        M_ta_prps_zy += prps_M_ta_t_11
-        M_ta_zz += prps_M_ta_t_12
+        M_ta_yy += prps_M_ta_t_5
+        M_ta_zz += -prps_M_ta_t_9
+        M_ta_prps_xy += -prps_M_ta_t
+        M_ta_prps_xz += prps_M_ta_t_2
+        M_ta_prps_yx += prps_M_ta_t_3
+        M_ta_prps_yz += prps_M_ta_t_6
+        M_ta_prps_zx += prps_M_ta_t_7
+        M_ta_prps_zy += prps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_prps_xx += prps_M_aa_t
         M_aa_prps_xy += prps_M_aa_t_2
-        M_aa_prps_xz += prps_M_aa_t_3
-        M_aa_prps_yy += prps_M_aa_t_4
+        M_aa_t += prps_M_aa_t_3
+        M_aa_t_2 += prps_M_aa_t_4
         M_aa_prps_yz += prps_M_aa_t_5
         M_aa_prps_zz += prps_M_aa_t_6
     # (M_tt) translational block of M
@@ -2427,6 +2418,7 @@ def _run_M(m, X):
     M_tt_yy = M_tt_prps_yy + m_star
     M_tt_zz = M_tt_prps_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_prps_xy + h_star_z
     M_ta_xz = M_ta_prps_xz - h_star_y
     M_ta_yx = M_ta_prps_yx - h_star_z
@@ -2436,8 +2428,8 @@ def _run_M(m, X):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_prps_xx
     M_aa_xy = J_star_xy + M_aa_prps_xy
-    M_aa_xz = J_star_xz + M_aa_prps_xz
-    M_aa_yy = J_star_yy + M_aa_prps_yy
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_prps_yz
     M_aa_zz = J_star_zz + M_aa_prps_zz
     # (M_tt) translational block of M
@@ -2482,14 +2474,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 363 mul, 273 add, 3 div, 3 sqrt, 0 trig
+# Z: 360 mul, 273 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2554,13 +2546,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2846,7 +2837,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 423 mul, 330 add, 3 div, 3 sqrt, 0 trig
+# required: 414 mul, 324 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2944,9 +2935,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -2970,27 +2958,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_prps_x, R_a_prps_y, R_a_prps_z = [0.0] * 6
     for leg, k in legs[0]:
         (

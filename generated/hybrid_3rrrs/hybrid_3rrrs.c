@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -951,6 +962,8 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -969,6 +982,7 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1536,8 +1550,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1607,16 +1621,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1648,7 +1661,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1659,28 +1672,27 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 
 typedef struct {
     real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_h_2_t_9, rrrs_h_2_t_16, rrrs_h_2_t_17, rrrs_h_2_t_19,
-        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_r_2_in_axes3_x,
-        rrrs_r_2_in_axes3_y, rrrs_e_1_in_axes3_x, rrrs_e_1_in_axes3_y, rrrs_v_1_in_axes3_z,
-        axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z, rrrs_w_1_in_axes3_z,
-        rrrs_w_1_x, rrrs_w_1_y, rrrs_w_1_z, axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y,
-        axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x, axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z,
-        rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t, rrrs_bias_t_2,
-        rrrs_d_3_in_axes3_x, rrrs_d_3_in_axes3_y, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y,
-        rrrs_g_in_axes3_z, rrrs_g_in_axes1_x, rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10,
-        rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x, rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x,
-        rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t, rrrs_S_dot_t_2, rrrs_S_dot_t_3, rrrs_qd_1,
-        rrrs_qd_2_t, rrrs_qd_3, rrrs_W_2_in_axes2_yz, rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy,
-        rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz, rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x,
-        rrrs_zeta_3_t, rrrs_bias_in_axes3_x, rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z,
-        rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6, rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8,
-        rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3, rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y,
-        rrrs_S_ddot_in_axes3_z, rrrs_qdd_1, rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz,
-        rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
-        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-        rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
-        rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x,
-        rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x, rrrs_c_in_axes3_y,
-        rrrs_c_in_axes3_z;
+        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x,
+        rrrs_e_1_in_axes3_y, axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z,
+        axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x,
+        axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y,
+        rrrs_r_2_in_axes3_x, rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y,
+        rrrs_w_1_z, rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t,
+        rrrs_bias_t_2, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x,
+        rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x,
+        rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3,
+        rrrs_S_dot_t_4, rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz,
+        rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz,
+        rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x,
+        rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
+        rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
+        rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
+        rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
+        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
+        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
+        rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+        rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z,
+        rrrs_c_in_axes3_x, rrrs_c_in_axes3_y, rrrs_c_in_axes3_z;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1744,46 +1756,45 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
     v->rrrs_s_3_t =
         m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*rrrs_h_2_t_18*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i];
-    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrs_r_2_t = m->rrrs_platform_joint_offset_x[i]*v->rrrs_s_3_t;
-    const real rrrs_r_2_in_axes2_x = m->rrrs_joint3_offset_x[i] +
-        v->rrrs_c_3*m->rrrs_platform_joint_offset_x[i];
-    v->rrrs_r_2_in_axes3_x = v->rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*v->rrrs_s_3_t;
-    v->rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*v->rrrs_s_3_t - v->rrrs_c_3*rrrs_r_2_t;
-    /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+    /* (rrrs-S_dot) velocity of the connection point */
     v->rrrs_e_1_in_axes3_x = v->rrrs_c_3*v->rrrs_h_2_t_19 + v->rrrs_h_2_t_20*v->rrrs_s_3_t;
     v->rrrs_e_1_in_axes3_y = v->rrrs_h_2_t_19*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_h_2_t_20;
-    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
-    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
-    v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
-        v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
-        v->rrrs_s_3_t*rrrs_v_1_t_2);
-    /* (rrrs-w_1) reciprocal vector 1 */
     v->axis_z_rrrs_axes3_x = m->rrrs_base_frame_xz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_xy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_y = m->rrrs_base_frame_yz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_yy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_z = m->rrrs_base_frame_zz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_zy[i]*v->rrrs_s_1;
-    v->rrrs_w_1_in_axes3_z = 1/v->rrrs_v_1_in_axes3_z;
-    v->rrrs_w_1_x = v->axis_z_rrrs_axes3_x*v->rrrs_w_1_in_axes3_z;
-    v->rrrs_w_1_y = v->axis_z_rrrs_axes3_y*v->rrrs_w_1_in_axes3_z;
-    v->rrrs_w_1_z = v->axis_z_rrrs_axes3_z*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    const real rrrs_w_2_t = v->rrrs_c_1*v->rrrs_e_1_in_axes3_x;
-    const real rrrs_w_2_t_2 = v->rrrs_e_1_in_axes3_x*v->rrrs_s_1;
+    const real rrrs_S_dot_t = v->rrrs_c_1*v->rrrs_e_1_in_axes3_x;
+    const real rrrs_S_dot_t_2 = v->rrrs_e_1_in_axes3_x*v->rrrs_s_1;
     v->axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_xy[i]*rrrs_w_2_t + m->rrrs_base_frame_xz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_xy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_xz[i];
     v->axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_yy[i]*rrrs_w_2_t + m->rrrs_base_frame_yz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_yy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_yz[i];
     v->axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_zy[i]*rrrs_w_2_t + m->rrrs_base_frame_zz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_zy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_zz[i];
     v->axis_x_rrrs_axes3_x = v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_z -
         v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_y;
     v->axis_x_rrrs_axes3_y = v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_x -
         v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_z;
     v->axis_x_rrrs_axes3_z = v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_y -
         v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_x;
+    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+    v->rrrs_d_3_in_axes3_x = v->rrrs_c_3*m->rrrs_joint3_offset_x[i];
+    v->rrrs_r_2_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
+    v->rrrs_r_2_in_axes3_x = m->rrrs_platform_joint_offset_x[i] + v->rrrs_d_3_in_axes3_x;
+    /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
+    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
+    v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
+        v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
+        v->rrrs_s_3_t*rrrs_v_1_t_2);
+    /* (rrrs-w_1) reciprocal vector 1 */
+    v->rrrs_w_1_in_axes3_z = 1/v->rrrs_v_1_in_axes3_z;
+    v->rrrs_w_1_x = v->axis_z_rrrs_axes3_x*v->rrrs_w_1_in_axes3_z;
+    v->rrrs_w_1_y = v->axis_z_rrrs_axes3_y*v->rrrs_w_1_in_axes3_z;
+    v->rrrs_w_1_z = v->axis_z_rrrs_axes3_z*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
     v->rrrs_w_2_in_axes3_x = -1/v->rrrs_r_2_in_axes3_y;
     v->rrrs_w_2_x = v->axis_x_rrrs_axes3_x*v->rrrs_w_2_in_axes3_x;
     v->rrrs_w_2_y = v->axis_x_rrrs_axes3_y*v->rrrs_w_2_in_axes3_x;
@@ -1791,8 +1802,6 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
     v->rrrs_bias_t = v->rrrs_h_2_t_19*m->rrrs_joint2_offset_x[i];
     v->rrrs_bias_t_2 = v->rrrs_h_2_t_20*m->rrrs_joint2_offset_x[i];
-    v->rrrs_d_3_in_axes3_x = v->rrrs_c_3*m->rrrs_joint3_offset_x[i];
-    v->rrrs_d_3_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
     /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rrrs_g_in_axes3_x = v->axis_x_rrrs_axes3_x*m->gravity_x +
         v->axis_x_rrrs_axes3_y*m->gravity_y + v->axis_x_rrrs_axes3_z*m->gravity_z;
@@ -1832,44 +1841,45 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     /* (rrrs-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    v->rrrs_S_dot_t = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
+    v->rrrs_S_dot_t_3 = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
     const real omega_x = V[3*w + j];
-    v->rrrs_S_dot_t_2 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
-    v->rrrs_S_dot_t_3 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
+    v->rrrs_S_dot_t_4 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
+    v->rrrs_S_dot_t_5 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrrs_S_dot_x = t_dot_x + v->rrrs_S_dot_t;
+    const real rrrs_S_dot_x = t_dot_x + v->rrrs_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrrs_S_dot_y = t_dot_y + v->rrrs_S_dot_t_2;
+    const real rrrs_S_dot_y = t_dot_y + v->rrrs_S_dot_t_4;
     const real t_dot_z = V[2*w + j];
-    const real rrrs_S_dot_z = t_dot_z + v->rrrs_S_dot_t_3;
+    const real rrrs_S_dot_z = t_dot_z + v->rrrs_S_dot_t_5;
+    const real rrrs_S_dot_in_axes3_x = v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z;
     /* (rrrs-qd_1) rate of joint 1 */
     v->rrrs_qd_1 = v->rrrs_w_1_in_axes3_z*(v->axis_z_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_z_rrrs_axes3_y*rrrs_S_dot_y + v->axis_z_rrrs_axes3_z*rrrs_S_dot_z);
     /* (rrrs-qd_2) rate of joint 2 */
-    v->rrrs_qd_2_t = -v->rrrs_w_2_in_axes3_x*(v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-        v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+    v->rrrs_qd_2 = rrrs_S_dot_in_axes3_x*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-qd_3) rate of joint 3 */
     v->rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(v->axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-        v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z +
-        v->rrrs_qd_2_t*v->rrrs_r_2_in_axes3_x);
+        v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+        v->rrrs_qd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-omega_1) angular velocity of link 1 */
     const real rrrs_omega_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qd_1;
-    const real rrrs_omega_1_t = v->rrrs_h_2_t_20*v->rrrs_qd_1;
-    const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x +
-        rrrs_omega_1_t*v->rrrs_s_3_t;
-    const real rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*v->rrrs_s_3_t -
-        v->rrrs_c_3*rrrs_omega_1_t;
+    const real rrrs_omega_1_in_axes2_y = -v->rrrs_h_2_t_20*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x -
+        rrrs_omega_1_in_axes2_y*v->rrrs_s_3_t;
+    const real rrrs_omega_1_in_axes3_y = v->rrrs_c_3*rrrs_omega_1_in_axes2_y +
+        rrrs_omega_1_in_axes2_x*v->rrrs_s_3_t;
     /* (rrrs-W_2) centripetal tensor of link 2 */
-    v->rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*v->rrrs_qd_2_t;
-    v->rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t;
+    v->rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*v->rrrs_qd_2;
+    v->rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
     /* (rrrs-omega_3) angular velocity of link 3 */
-    const real rrrs_omega_3_in_axes3_z = v->rrrs_qd_3 - v->rrrs_qd_2_t;
+    const real rrrs_omega_3_in_axes3_z = v->rrrs_qd_2 + v->rrrs_qd_3;
     /* (rrrs-W_3) centripetal tensor of link 3 */
     v->rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
     v->rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
     v->rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
     /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    v->rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*v->rrrs_qd_2_t;
+    v->rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*v->rrrs_qd_2;
     const real rrrs_zeta_2_in_axes3_y = v->rrrs_W_2_in_axes2_yz*v->rrrs_s_3_t +
         v->rrrs_c_3*v->rrrs_zeta_2_in_axes2_y;
     /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
@@ -1881,23 +1891,23 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(v->rrrs_bias_t*v->rrrs_s_3_t -
         v->rrrs_bias_t_2*v->rrrs_c_3) - rrrs_omega_1_in_axes3_y*(v->rrrs_bias_t*v->rrrs_c_3 +
         v->rrrs_bias_t_2*v->rrrs_s_3_t);
-    const real rrrs_bias_t_4 = v->rrrs_d_3_in_axes3_y*v->rrrs_qd_2_t;
-    const real rrrs_bias_t_5 = v->rrrs_d_3_in_axes3_x*v->rrrs_qd_2_t;
-    const real rrrs_bias_t_6 = v->rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+    const real rrrs_bias_t_4 = v->rrrs_d_3_in_axes3_x*v->rrrs_qd_2;
+    const real rrrs_bias_t_5 = rrrs_omega_1_in_axes3_x*v->rrrs_r_2_in_axes3_y -
         v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     v->rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_5*v->rrrs_qd_2_t + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
-    v->rrrs_bias_in_axes3_y = rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_4*v->rrrs_qd_2_t - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-    v->rrrs_bias_in_axes3_z = v->rrrs_d_3_in_axes3_y*(v->rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
-        v->rrrs_s_3_t*v->rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x - v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
-        + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
+        rrrs_bias_t_4*v->rrrs_qd_2 + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_y - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z;
+    v->rrrs_bias_in_axes3_y = rrrs_S_dot_in_axes3_x*v->rrrs_qd_2 +
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x;
+    v->rrrs_bias_in_axes3_z = rrrs_bias_t_4*rrrs_omega_1_in_axes3_x -
+        rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y +
+        v->rrrs_r_2_in_axes3_y*(v->rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
+        v->rrrs_s_3_t*v->rrrs_zeta_2_in_axes2_y) -
+        v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        - rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
@@ -1907,8 +1917,8 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_mu_3_t_6 = m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2);
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-    const real rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t;
-    const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
+    const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+    const real rrrs_mu_2_t_5 = v->rrrs_qd_2*v->rrrs_qd_2;
     v->rrrs_mu_2_t_6 = m->rrrs_J_2_in_spec2_yz[i]*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5);
     v->rrrs_mu_2_t_7 = m->rrrs_J_2_in_spec2_xz[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5);
     v->rrrs_mu_2_t_8 = m->rrrs_J_2_in_spec2_xy[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4);
@@ -2019,13 +2029,14 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_zz =
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
+        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z +
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z +
-        rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
     const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
         v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
@@ -2042,38 +2053,34 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
     v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
+    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
+        + v->rrrs_Q_xx + v->rrrs_Q_yy;
     v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
     v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
-    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
     v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
         v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
-    const real rrrs_Q_t_13 = v->axis_y_rrrs_axes3_z*rrrs_Q_t_7 +
-        v->axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-    v->rrrs_Q_zz = 2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
     /* (M_ta) coupling block of M */
-    const real rrrs_M_ta_t = v->rrrs_Q_xy*v->rrrs_q_z;
-    const real rrrs_M_ta_t_2 = v->rrrs_Q_xz*v->rrrs_q_y;
-    v->rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
-    v->rrrs_M_ta_t_4 = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_x - v->rrrs_Q_xx*v->rrrs_q_y;
-    v->rrrs_M_ta_t_6 = v->rrrs_Q_yz*v->rrrs_q_y - v->rrrs_Q_yy*v->rrrs_q_z;
-    const real rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-    v->rrrs_M_ta_t_9 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
-    v->rrrs_M_ta_t_10 = v->rrrs_Q_zz*v->rrrs_q_y - v->rrrs_Q_yz*v->rrrs_q_z;
-    v->rrrs_M_ta_t_11 = v->rrrs_Q_xz*v->rrrs_q_z - v->rrrs_Q_zz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
+    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
+    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
+    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
+    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
+    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
+    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
+    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
     /* (M_aa) rotational block of M */
-    v->rrrs_M_aa_t = v->rrrs_M_ta_t_10*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
-    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_11*v->rrrs_q_y - v->rrrs_M_ta_t_8*v->rrrs_q_z;
-    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_12*v->rrrs_q_y - v->rrrs_M_ta_t_9*v->rrrs_q_z;
-    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t_4*v->rrrs_q_z - v->rrrs_M_ta_t_11*v->rrrs_q_x;
-    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_5*v->rrrs_q_z - v->rrrs_M_ta_t_12*v->rrrs_q_x;
-    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_9*v->rrrs_q_x - v->rrrs_M_ta_t_5*v->rrrs_q_y;
+    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
+    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
+    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
+    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
+    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
+    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
 }
 
 INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -2082,10 +2089,10 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-u_1) centripetal acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rrrs_u_1_x = omega_y*v->rrrs_S_dot_t_3 - omega_z*v->rrrs_S_dot_t_2;
+    const real rrrs_u_1_x = omega_y*v->rrrs_S_dot_t_5 - omega_z*v->rrrs_S_dot_t_4;
     const real omega_x = V[3*w + j];
-    const real rrrs_u_1_y = omega_z*v->rrrs_S_dot_t - omega_x*v->rrrs_S_dot_t_3;
-    const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t;
+    const real rrrs_u_1_y = omega_z*v->rrrs_S_dot_t_3 - omega_x*v->rrrs_S_dot_t_5;
+    const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_4 - omega_y*v->rrrs_S_dot_t_3;
     const real rrrs_u_1_in_axes3_x = v->axis_x_rrrs_axes3_x*rrrs_u_1_x +
         v->axis_x_rrrs_axes3_y*rrrs_u_1_y + v->axis_x_rrrs_axes3_z*rrrs_u_1_z;
     const real rrrs_u_1_in_axes3_y = v->axis_y_rrrs_axes3_x*rrrs_u_1_x +
@@ -2312,11 +2319,8 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2332,14 +2336,86 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[2*i*w + k] = o[0*count + at];
+    H[(NU + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 2*i)*w + k] = o[5*count + at];
+    H[(1 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
+}
+
+INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2366,32 +2442,31 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (rrrs-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrrs_w_1_x;
     o[1*count + k] = v.rrrs_w_1_y;
@@ -2419,26 +2494,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void dynamics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -2448,60 +2503,63 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2518,7 +2576,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2527,7 +2584,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2536,7 +2592,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2566,17 +2621,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_rrrs[27*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         dynamics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        dynamics_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
+        any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2586,20 +2641,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_rrrs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+            any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2608,31 +2663,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2645,36 +2675,29 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
         TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
         TOLERANCE*m->rrrs_size[i]);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-}
-
-INLINE void M_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2686,41 +2709,44 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2736,7 +2762,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2745,7 +2770,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2754,7 +2778,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2775,17 +2798,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_rrrs[21*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_rrrs[20*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         M_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        M_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2794,19 +2817,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrrs(k, k, LANES, o_rrrs, t);
+            any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2815,22 +2838,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2863,12 +2870,6 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
         TOLERANCE*m->rrrs_size[i]);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-}
-
-INLINE void Z_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2906,15 +2907,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         Z_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        Z_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
@@ -2930,7 +2931,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2939,7 +2940,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrrs(k, k, LANES, o_rrrs, t);
+            any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2948,22 +2949,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2996,37 +2981,17 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void H_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[2*i*w + k] = o[0*count + at];
-    H[(NU + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 2*i)*w + k] = o[5*count + at];
-    H[(1 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 1 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 1 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 1 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 1 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         H_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        H_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
+        any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
 }
 
@@ -3037,46 +3002,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rrrs[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+            any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -3087,9 +3025,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -3119,27 +3054,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3255,12 +3187,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        required_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A, terms_rrrs, o_rrrs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            required_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A,
+                terms_rrrs, o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         required_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
@@ -3279,7 +3214,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrrs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3297,22 +3232,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
@@ -3350,10 +3269,10 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         inverse_kinematics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -3369,7 +3288,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3382,22 +3301,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3407,10 +3310,10 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-qd_1) rate of joint 1 */
     o[0*count + k] = v.rrrs_qd_1;
     /* (rrrs-qd_2) rate of joint 2 */
-    o[1*count + k] = -v.rrrs_qd_2_t;
+    o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2_t + v.rrrs_qd_3);
+    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
     o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
@@ -3433,10 +3336,10 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_rates_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, o_rrrs);
     }
@@ -3452,7 +3355,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3465,33 +3368,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3528,10 +3404,10 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_accelerations_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
     }
@@ -3547,7 +3423,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3560,33 +3436,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3650,12 +3499,14 @@ INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t coun
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrs[11*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        legs_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            legs_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         legs_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, leg_force, actuator, t);
@@ -3663,22 +3514,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3727,13 +3562,6 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void potential_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3746,15 +3574,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_rrrs[LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        potential_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            potential_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs,
+                o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        potential_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
@@ -3873,8 +3704,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_rrrs[LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[17*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
@@ -4245,7 +4076,7 @@ int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -4294,8 +4125,8 @@ int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4364,7 +4195,7 @@ int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 1, 2, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4381,7 +4212,7 @@ int hybrid_3rrrs_leg_reactions(const prepared *m, const real *X, const real *V, 
 int hybrid_3rrrs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4402,8 +4233,8 @@ int hybrid_3rrrs_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4434,9 +4265,9 @@ int hybrid_3rrrs_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4468,9 +4299,9 @@ int hybrid_3rrrs_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4502,8 +4333,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4592,7 +4423,7 @@ int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4605,7 +4436,7 @@ int hybrid_3rrrs_dissipation(const prepared *m, const real *X, const real *V, re
 
 int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4617,7 +4448,7 @@ int hybrid_3rrrs_momentum(const prepared *m, const real *X, const real *V, real 
 int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4632,7 +4463,7 @@ int hybrid_3rrrs_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4646,7 +4477,7 @@ int hybrid_3rrrs_within_limits(const prepared *m, const real *X, real *within_ou
 
 int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4657,7 +4488,7 @@ int hybrid_3rrrs_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4669,7 +4500,7 @@ int hybrid_3rrrs_actuator_rates(const prepared *m, const real *X, const real *V,
 int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4681,7 +4512,7 @@ int hybrid_3rrrs_actuator_accelerations(const prepared *m, const real *X, const 
 int hybrid_3rrrs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4741,7 +4572,7 @@ int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4757,7 +4588,7 @@ int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved_out)
 
 int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4773,7 +4604,8 @@ int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step_out)
 
 int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

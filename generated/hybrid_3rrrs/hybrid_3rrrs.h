@@ -135,7 +135,7 @@ typedef struct {
             rrrs_rho2_2_t[4], rrrs_size[4], rrrs_size_t_3[4], rrrs_w_3_in_axes3_y[4];
     hybrid_3rrrs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hybrid_3rrrs_model;
@@ -154,20 +154,20 @@ extern const char *const hybrid_3rrrs_ACTUATOR_NAMES[HYBRID_3RRRS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model);
 
-/* Inertia matrix M. 663 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 639 mul, 484 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
     *M);
 size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 933 mul, 681 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 909 mul, 675 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_Z(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z);
 size_t hybrid_3rrrs_Z_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 318 mul, 165 add, 12 div, 6 sqrt, 0 trig. In:
+/* Force transformation H: actuators to task space. 309 mul, 159 add, 12 div, 6 sqrt, 0 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hybrid_3rrrs_H(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
     *H);
@@ -181,14 +181,14 @@ int hybrid_3rrrs_inverse_kinematics(const hybrid_3rrrs_model *model, const hybri
 size_t hybrid_3rrrs_inverse_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of all joints. 327 mul, 189 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 315 mul, 183 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_joint_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_joint_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of all joints. 531 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 510 mul, 315 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_joint_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);
@@ -196,7 +196,7 @@ size_t hybrid_3rrrs_joint_accelerations_batch(const hybrid_3rrrs_model *model, s
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
     hybrid_3rrrs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1335 mul, 1008 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1302 mul, 1003 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H);
@@ -204,9 +204,9 @@ size_t hybrid_3rrrs_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, co
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z,
     hybrid_3rrrs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1011 mul, 738 add, 12 div, 6 sqrt, 0
-   trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
-   NULL). Out: tau (NU). */
+/* Actuator forces tau for the acceleration A, by Eq. 3. 981 mul, 726 add, 12 div, 6 sqrt, 0 trig;
+   the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
+   Out: tau (NU). */
 int hybrid_3rrrs_inverse_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
     hybrid_3rrrs_real *tau);
@@ -214,7 +214,7 @@ size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1335 mul, 1008 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1302 mul, 1003 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -235,7 +235,7 @@ size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model,
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 879 mul, 630 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 858 mul, 624 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_leg_reactions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
@@ -255,7 +255,7 @@ size_t hybrid_3rrrs_energy_batch(const hybrid_3rrrs_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 340 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 331 mul, 186 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int hybrid_3rrrs_condition(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs);
@@ -263,15 +263,15 @@ size_t hybrid_3rrrs_condition_batch(const hybrid_3rrrs_model *model, size_t n, c
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 340 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular
+   the least over the largest of them. 331 mul, 186 add, 12 div, 13 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int hybrid_3rrrs_manipulability(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *measure, hybrid_3rrrs_real *isotropy);
 size_t hybrid_3rrrs_manipulability_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *measure, hybrid_3rrrs_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 340
-   mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 331
+   mul, 186 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int hybrid_3rrrs_singularity_distance(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *actuators, hybrid_3rrrs_real *legs);
@@ -293,7 +293,7 @@ int hybrid_3rrrs_dissipation(const hybrid_3rrrs_model *model, const hybrid_3rrrs
 size_t hybrid_3rrrs_dissipation_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 663 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 639 mul, 484 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_momentum(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum);
@@ -321,14 +321,14 @@ int hybrid_3rrrs_actuator_positions(const hybrid_3rrrs_model *model, const hybri
 size_t hybrid_3rrrs_actuator_positions_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 327 mul, 189 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 315 mul, 183 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_actuator_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_actuator_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 531 mul, 321 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 510 mul, 315 add, 12 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_actuator_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
     *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);

@@ -754,6 +754,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -767,9 +768,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -796,8 +797,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -819,9 +820,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -1977,14 +1978,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1335 mul, 1008 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1302 mul, 1003 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2051,13 +2052,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2073,11 +2073,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
-        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-        Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
-    ) = [0.0] * 27
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_rrrs_xy,
+        M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy, M_aa_rrrs_xx, M_aa_rrrs_xy,
+        M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz, Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z,
+        Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -2156,48 +2156,24 @@ def _run_dynamics(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -2208,6 +2184,33 @@ def _run_dynamics(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -2220,33 +2223,34 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_5 - omega_z*rrrs_S_dot_t_4
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t_3 - omega_x*rrrs_S_dot_t_5
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_4 - omega_y*rrrs_S_dot_t_3
         rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
@@ -2260,7 +2264,7 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -2274,29 +2278,26 @@ def _run_dynamics(m, X, V):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -2412,8 +2413,8 @@ def _run_dynamics(m, X, V):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -2507,6 +2508,11 @@ def _run_dynamics(m, X, V):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
+        rrrs_d_c_in_axes3_zz = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z -
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z
+        )
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
@@ -2524,11 +2530,7 @@ def _run_dynamics(m, X, V):
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
-        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
@@ -2547,6 +2549,11 @@ def _run_dynamics(m, X, V):
         rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
         rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
         rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = (
+        rrrs_Q_xx + rrrs_Q_yy + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_yy + rrrs_d_c_in_axes3_zz
+        )
         rrrs_Q_xy = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
@@ -2555,14 +2562,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
         axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
             axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
         rrrs_U_x = (
         -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
@@ -2577,25 +2580,22 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
-        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
-        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
-        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
-        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
-        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
-        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
-        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        rrrs_M_ta_t = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_2 = rrrs_Q_xx*rrrs_q_y - rrrs_Q_xy*rrrs_q_x
+        rrrs_M_ta_t_3 = rrrs_Q_yy*rrrs_q_z - rrrs_Q_yz*rrrs_q_y
+        rrrs_M_ta_t_4 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_z - rrrs_M_ta_t_4
+        rrrs_M_ta_t_6 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_13*rrrs_q_y + rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_8 = rrrs_Q_t_13*rrrs_q_x + rrrs_Q_xz*rrrs_q_z
+        rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - rrrs_Q_xz*rrrs_q_y
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
+        rrrs_M_aa_t = rrrs_M_ta_t_3*rrrs_q_z - rrrs_M_ta_t_7*rrrs_q_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_y - rrrs_M_ta_t_5*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_9*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t*rrrs_q_z - rrrs_M_ta_t_8*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         # (Z_a) rotational part of Z
         rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
@@ -2620,23 +2620,22 @@ def _run_dynamics(m, X, V):
         M_tt_xz += rrrs_Q_xz
         M_tt_rrrs_yy += rrrs_Q_yy
         M_tt_yz += rrrs_Q_yz
-        M_tt_rrrs_zz += rrrs_Q_zz
+        M_tt_t += rrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += rrrs_M_ta_t_3
-        M_ta_rrrs_xy += rrrs_M_ta_t_4
-        M_ta_rrrs_xz += rrrs_M_ta_t_5
-        M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_yy += rrrs_M_ta_t_8
-        M_ta_rrrs_yz += rrrs_M_ta_t_9
-        M_ta_rrrs_zx += rrrs_M_ta_t_10
-        M_ta_rrrs_zy += rrrs_M_ta_t_11
-        M_ta_zz += rrrs_M_ta_t_12
+        M_ta_yy += rrrs_M_ta_t_5
+        M_ta_zz += rrrs_M_ta_t_9
+        M_ta_rrrs_xy += rrrs_M_ta_t
+        M_ta_t += rrrs_M_ta_t_2
+        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_rrrs_yz += rrrs_M_ta_t_6
+        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_t += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrs_x += rrrs_U_x
@@ -2665,20 +2664,21 @@ def _run_dynamics(m, X, V):
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrs_xx + m_star
     M_tt_yy = M_tt_rrrs_yy + m_star
-    M_tt_zz = M_tt_rrrs_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrs_xz - h_star_y
-    M_ta_yx = M_ta_rrrs_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrs_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rrrs_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rrrs_xx
     M_aa_xy = J_star_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrs_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrs_x
@@ -2738,13 +2738,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 663 mul, 489 add, 12 div, 6 sqrt, 0 trig
+# M: 639 mul, 484 add, 12 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2797,18 +2797,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
-        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-    ) = [0.0] * 21
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_t, M_ta_yy, M_ta_zz, M_ta_rrrs_xy,
+        M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy, M_aa_rrrs_xx, M_aa_rrrs_xy,
+        M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -2882,39 +2881,25 @@ def _run_M(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -2925,6 +2910,20 @@ def _run_M(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
         rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
@@ -2983,14 +2982,15 @@ def _run_M(m, X):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
+        rrrs_d_c_in_axes3_zz = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z -
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z
+        )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
-        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
@@ -3009,6 +3009,11 @@ def _run_M(m, X):
         rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
         rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
         rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = (
+        rrrs_Q_xx + rrrs_Q_yy + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_yy + rrrs_d_c_in_axes3_zz
+        )
         rrrs_Q_xy = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
@@ -3017,34 +3022,27 @@ def _run_M(m, X):
         axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
         axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
             axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
-        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
-        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
-        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
-        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
-        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
-        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
-        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        rrrs_M_ta_t = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_2 = rrrs_Q_xx*rrrs_q_y - rrrs_Q_xy*rrrs_q_x
+        rrrs_M_ta_t_3 = rrrs_Q_yy*rrrs_q_z - rrrs_Q_yz*rrrs_q_y
+        rrrs_M_ta_t_4 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_z - rrrs_M_ta_t_4
+        rrrs_M_ta_t_6 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_13*rrrs_q_y + rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_8 = rrrs_Q_t_13*rrrs_q_x + rrrs_Q_xz*rrrs_q_z
+        rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - rrrs_Q_xz*rrrs_q_y
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
+        rrrs_M_aa_t = rrrs_M_ta_t_3*rrrs_q_z - rrrs_M_ta_t_7*rrrs_q_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_y - rrrs_M_ta_t_5*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_9*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t*rrrs_q_z - rrrs_M_ta_t_8*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         ok = (
         ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
             _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
@@ -3057,41 +3055,41 @@ def _run_M(m, X):
         M_tt_xz += rrrs_Q_xz
         M_tt_rrrs_yy += rrrs_Q_yy
         M_tt_yz += rrrs_Q_yz
-        M_tt_rrrs_zz += rrrs_Q_zz
+        M_tt_t += rrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_xx += rrrs_M_ta_t_3
-        M_ta_rrrs_xy += rrrs_M_ta_t_4
-        M_ta_rrrs_xz += rrrs_M_ta_t_5
-        M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_yy += rrrs_M_ta_t_8
-        M_ta_rrrs_yz += rrrs_M_ta_t_9
-        M_ta_rrrs_zx += rrrs_M_ta_t_10
-        M_ta_rrrs_zy += rrrs_M_ta_t_11
-        M_ta_zz += rrrs_M_ta_t_12
+        M_ta_yy += rrrs_M_ta_t_5
+        M_ta_zz += rrrs_M_ta_t_9
+        M_ta_rrrs_xy += rrrs_M_ta_t
+        M_ta_t += rrrs_M_ta_t_2
+        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_rrrs_yz += rrrs_M_ta_t_6
+        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_t += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrs_xx + m_star
     M_tt_yy = M_tt_rrrs_yy + m_star
-    M_tt_zz = M_tt_rrrs_zz + m_star
+    M_tt_zz = m_star - M_tt_t
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrs_xz - h_star_y
-    M_ta_yx = M_ta_rrrs_yx - h_star_z
+    M_ta_xz = -M_ta_t - h_star_y
+    M_ta_yx = -M_ta_t_2 - h_star_z
     M_ta_yz = M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrs_zx + h_star_y
+    M_ta_zx = h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rrrs_zy - h_star_x
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rrrs_xx
     M_aa_xy = J_star_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrs_yz
+    M_aa_yz = J_star_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrs_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -3135,14 +3133,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 933 mul, 681 add, 12 div, 6 sqrt, 0 trig
+# Z: 909 mul, 675 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3207,13 +3205,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3304,45 +3301,24 @@ def _run_Z(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -3353,6 +3329,30 @@ def _run_Z(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -3360,33 +3360,34 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_5 - omega_z*rrrs_S_dot_t_4
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t_3 - omega_x*rrrs_S_dot_t_5
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_4 - omega_y*rrrs_S_dot_t_3
         rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
@@ -3400,7 +3401,7 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -3414,29 +3415,26 @@ def _run_Z(m, X, V):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -3528,8 +3526,8 @@ def _run_Z(m, X, V):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -3656,7 +3654,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 318 mul, 165 add, 12 div, 6 sqrt, 0 trig
+# H: 309 mul, 159 add, 12 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3764,41 +3762,25 @@ def _run_H(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -3809,6 +3791,21 @@ def _run_H(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -3846,7 +3843,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1011 mul, 738 add, 12 div, 6 sqrt, 0 trig
+# required: 981 mul, 726 add, 12 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3944,9 +3941,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3970,27 +3964,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -4067,48 +4058,24 @@ def _run_required(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -4119,6 +4086,33 @@ def _run_required(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -4129,25 +4123,26 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -4169,7 +4164,7 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -4183,29 +4178,26 @@ def _run_required(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -4291,8 +4283,8 @@ def _run_required(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -4564,7 +4556,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 327 mul, 189 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 315 mul, 183 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4686,45 +4678,24 @@ def _run_joint_rates(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -4735,6 +4706,30 @@ def _run_joint_rates(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -4742,14 +4737,11 @@ def _run_joint_rates(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         ok = (
         ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
@@ -4760,13 +4752,13 @@ def _run_joint_rates(m, X, V):
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
         # (rrrs-qd_2) rate of joint 2
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t
+        out_qd[_qd_rrrs[1][leg]] = rrrs_qd_2
         # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 531 mul, 321 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 510 mul, 315 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4918,45 +4910,24 @@ def _run_joint_accelerations(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -4967,6 +4938,30 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -4974,24 +4969,25 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
         rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
@@ -5009,7 +5005,7 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
@@ -5022,29 +5018,26 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -5072,7 +5065,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 879 mul, 630 add, 12 div, 6 sqrt, 0 trig
+# legs: 858 mul, 624 add, 12 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -5233,48 +5226,24 @@ def _run_legs(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -5285,6 +5254,33 @@ def _run_legs(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -5295,25 +5291,26 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -5335,7 +5332,7 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -5349,29 +5346,26 @@ def _run_legs(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -5457,8 +5451,8 @@ def _run_legs(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -5726,7 +5720,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 340 mul, 192 add, 12 div, 13 sqrt, 0 trig
+# condition: 331 mul, 186 add, 12 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -5844,41 +5838,25 @@ def _run_condition(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -5889,6 +5867,21 @@ def _run_condition(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x

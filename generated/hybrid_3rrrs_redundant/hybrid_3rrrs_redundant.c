@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1375,6 +1386,8 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -1397,6 +1410,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -2060,8 +2074,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -2131,16 +2145,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -2172,7 +2185,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -2183,39 +2196,38 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 
 typedef struct {
     real rrrrs_bias_t, rrrrs_q_x, rrrrs_q_y, rrrrs_q_z, rrrrs_h_3_t_6, rrrrs_h_3_t_7, rrrrs_h_3_t_11,
-        rrrrs_h_3_t_23, rrrrs_h_3_t_24, rrrrs_h_3_t_26, rrrrs_h_3_t_27, rrrrs_h_3_in_axes2_x,
-        rrrrs_c_1, rrrrs_s_1, rrrrs_c_4, rrrrs_s_4_t, rrrrs_r_3_in_axes4_x, rrrrs_r_3_in_axes4_y,
-        rrrrs_r_2_in_axes4_x, rrrrs_r_2_in_axes4_y, rrrrs_e_1_in_axes4_x, rrrrs_e_1_in_axes4_y,
-        rrrrs_v_1_in_axes4_z, axis_z_rrrrs_axes4_x, axis_z_rrrrs_axes4_y, axis_z_rrrrs_axes4_z,
-        rrrrs_w_1_in_axes4_z, rrrrs_w_1_x, rrrrs_w_1_y, rrrrs_w_1_z, axis_y_rrrrs_axes4_x,
-        axis_y_rrrrs_axes4_y, axis_y_rrrrs_axes4_z, axis_x_rrrrs_axes4_x, axis_x_rrrrs_axes4_y,
-        axis_x_rrrrs_axes4_z, rrrrs_w_3_in_axes4_x, rrrrs_w_3_t_7, rrrrs_w_3_x, rrrrs_w_3_y,
-        rrrrs_w_3_z, rrrrs_d_2_in_axes4_x, rrrrs_d_2_in_axes4_y, rrrrs_d_3_in_axes4_x,
-        rrrrs_d_3_in_axes4_y, rrrrs_d_4_in_axes4_x, rrrrs_d_4_in_axes4_y, rrrrs_g_in_axes1_x,
-        rrrrs_g_in_axes1_y, rrrrs_g_in_axes3_x, rrrrs_g_in_axes3_y, rrrrs_g_in_axes4_x,
-        rrrrs_g_in_axes4_y, rrrrs_g_in_axes4_z, rrrrs_P_c_3_in_axes2_x, rrrrs_mu_2_t_5,
-        rrrrs_mu_2_t_6, rrrrs_mu_2_t_7, rrrrs_mu_1_t, rrrrs_H_a_1_x, rrrrs_H_a_1_y, rrrrs_H_a_1_z,
-        rrrrs_H_a_3_x, rrrrs_H_a_3_y, rrrrs_H_a_3_z, rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z,
-        rrrrs_qd_1, rrrrs_qd_3, rrrrs_qd_4, rrrrs_W_1_in_axes4_xy, rrrrs_W_2_in_axes2_yz,
-        rrrrs_W_2_in_axes2_xz, rrrrs_W_2_in_axes2_xy, rrrrs_W_3_in_axes3_xy, rrrrs_W_3_in_axes3_xz,
-        rrrrs_W_3_in_axes3_yz, rrrrs_W_4_in_axes4_xz, rrrrs_W_4_in_axes4_yz, rrrrs_u_1_x, rrrrs_u_1_y,
-        rrrrs_u_1_z, rrrrs_zeta_3_in_axes3_x, rrrrs_zeta_3_in_axes3_y, rrrrs_zeta_4_in_axes4_x,
-        rrrrs_zeta_4_t, rrrrs_bias_in_axes4_x, rrrrs_bias_in_axes4_y, rrrrs_bias_in_axes4_z,
-        rrrrs_acc_3_t_3, rrrrs_acc_3_t_4, rrrrs_f_3_t_3, rrrrs_f_3_t_4, rrrrs_f_3_t_5, rrrrs_mu_4_t,
-        rrrrs_mu_4_t_2, rrrrs_mu_4_t_3, rrrrs_mu_3_t, rrrrs_mu_3_t_2, rrrrs_mu_3_t_3, rrrrs_mu_2_t_2,
-        rrrrs_mu_2_t_3, rrrrs_mu_2_t_4, rrrrs_c_t, rrrrs_c_t_2, rrrrs_c_t_3, rrrrs_S_ddot_in_axes4_x,
-        rrrrs_S_ddot_in_axes4_y, rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3, rrrrs_qdd_4,
-        rrrrs_Q_xx, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yy, rrrrs_Q_yz, rrrrs_Q_zz, rrrrs_d_P_2_x,
-        rrrrs_d_P_2_y, rrrrs_d_P_2_z, rrrrs_dy_2_P_2, rrrrs_M_ta_t_3, rrrrs_M_ta_t_4, rrrrs_M_ta_t_5,
-        rrrrs_M_ta_t_6, rrrrs_M_ta_t_8, rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11,
-        rrrrs_M_ta_t_12, rrrrs_M_aa_t, rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5,
-        rrrrs_M_aa_t_6, rrrrs_M_ya_2_x, rrrrs_M_ya_2_y, rrrrs_M_ya_2_z, rrrrs_U_x, rrrrs_U_y,
-        rrrrs_U_z, rrrrs_P_2_o, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3, rrrrs_alpha_1_in_axes2_x,
-        rrrrs_alpha_1_in_axes2_y, rrrrs_B_2_in_axes2_xy, rrrrs_B_2_in_axes2_yx, rrrrs_B_3_in_axes3_xy,
-        rrrrs_B_3_in_axes3_xz, rrrrs_B_3_in_axes3_yx, rrrrs_B_3_in_axes3_yz, rrrrs_acc_3_in_axes3_x,
-        rrrrs_acc_3_in_axes3_y, rrrrs_acc_4_in_axes4_x, rrrrs_acc_4_in_axes4_y,
-        rrrrs_acc_4_in_axes4_z, rrrrs_N_3_in_axes3_z, rrrrs_G_in_axes4_y, rrrrs_G_in_axes4_x,
-        rrrrs_c_in_axes4_x, rrrrs_c_in_axes4_y, rrrrs_c_in_axes4_z;
+        rrrrs_h_3_t_22, rrrrs_h_3_t_23, rrrrs_h_3_t_25, rrrrs_h_3_t_26, rrrrs_h_3_in_axes2_x,
+        rrrrs_c_1, rrrrs_s_1, rrrrs_c_4, rrrrs_s_4_t, rrrrs_d_4_in_axes4_x, rrrrs_r_3_in_axes4_y,
+        rrrrs_r_3_in_axes4_x, rrrrs_d_3_in_axes4_x, rrrrs_d_3_in_axes4_y, rrrrs_r_2_in_axes4_x,
+        rrrrs_r_2_in_axes4_y, rrrrs_e_1_in_axes4_x, rrrrs_e_1_in_axes4_y, rrrrs_v_1_in_axes4_z,
+        axis_z_rrrrs_axes4_x, axis_z_rrrrs_axes4_y, axis_z_rrrrs_axes4_z, rrrrs_w_1_in_axes4_z,
+        rrrrs_w_1_x, rrrrs_w_1_y, rrrrs_w_1_z, axis_y_rrrrs_axes4_x, axis_y_rrrrs_axes4_y,
+        axis_y_rrrrs_axes4_z, axis_x_rrrrs_axes4_x, axis_x_rrrrs_axes4_y, axis_x_rrrrs_axes4_z,
+        rrrrs_w_3_in_axes4_x, rrrrs_w_3_t_7, rrrrs_w_3_x, rrrrs_w_3_y, rrrrs_w_3_z,
+        rrrrs_d_2_in_axes4_x, rrrrs_d_2_in_axes4_y, rrrrs_g_in_axes1_x, rrrrs_g_in_axes1_y,
+        rrrrs_g_in_axes3_x, rrrrs_g_in_axes3_y, rrrrs_g_in_axes4_x, rrrrs_g_in_axes4_y,
+        rrrrs_g_in_axes4_z, rrrrs_P_c_3_in_axes2_x, rrrrs_mu_2_t_5, rrrrs_mu_2_t_6, rrrrs_mu_2_t_7,
+        rrrrs_mu_1_t, rrrrs_H_a_1_x, rrrrs_H_a_1_y, rrrrs_H_a_1_z, rrrrs_H_a_3_x, rrrrs_H_a_3_y,
+        rrrrs_H_a_3_z, rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z, rrrrs_qd_1, rrrrs_qd_3, rrrrs_qd_4,
+        rrrrs_W_1_in_axes4_xy, rrrrs_W_2_in_axes2_yz, rrrrs_W_2_in_axes2_xz, rrrrs_W_2_in_axes2_xy,
+        rrrrs_W_3_in_axes3_xy, rrrrs_W_3_in_axes3_xz, rrrrs_W_3_in_axes3_yz, rrrrs_W_4_in_axes4_xz,
+        rrrrs_W_4_in_axes4_yz, rrrrs_u_1_x, rrrrs_u_1_y, rrrrs_u_1_z, rrrrs_zeta_3_in_axes3_x,
+        rrrrs_zeta_3_in_axes3_y, rrrrs_zeta_4_in_axes4_x, rrrrs_zeta_4_t, rrrrs_bias_in_axes4_x,
+        rrrrs_bias_in_axes4_y, rrrrs_bias_in_axes4_z, rrrrs_acc_3_t_3, rrrrs_acc_3_t_4, rrrrs_f_3_t_3,
+        rrrrs_f_3_t_4, rrrrs_f_3_t_5, rrrrs_mu_4_t, rrrrs_mu_4_t_2, rrrrs_mu_4_t_3, rrrrs_mu_3_t,
+        rrrrs_mu_3_t_2, rrrrs_mu_3_t_3, rrrrs_mu_2_t_2, rrrrs_mu_2_t_3, rrrrs_mu_2_t_4, rrrrs_c_t,
+        rrrrs_c_t_2, rrrrs_c_t_3, rrrrs_S_ddot_in_axes4_x, rrrrs_S_ddot_in_axes4_y,
+        rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3, rrrrs_qdd_4, rrrrs_Q_xx, rrrrs_Q_yy,
+        rrrrs_Q_t_13, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yz, rrrrs_d_P_2_x, rrrrs_d_P_2_y, rrrrs_d_P_2_z,
+        rrrrs_dy_2_P_2, rrrrs_M_ta_t, rrrrs_M_ta_t_2, rrrrs_M_ta_t_3, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6,
+        rrrrs_M_ta_t_7, rrrrs_M_ta_t_8, rrrrs_M_ta_t_9, rrrrs_M_aa_t, rrrrs_M_aa_t_2, rrrrs_M_aa_t_3,
+        rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6, rrrrs_M_ya_2_x, rrrrs_M_ya_2_y,
+        rrrrs_M_ya_2_z, rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_P_2_o, rrrrs_Z_a_t, rrrrs_Z_a_t_2,
+        rrrrs_Z_a_t_3, rrrrs_alpha_1_in_axes2_x, rrrrs_alpha_1_in_axes2_y, rrrrs_B_2_in_axes2_xy,
+        rrrrs_B_2_in_axes2_yx, rrrrs_B_3_in_axes3_xy, rrrrs_B_3_in_axes3_xz, rrrrs_B_3_in_axes3_yx,
+        rrrrs_B_3_in_axes3_yz, rrrrs_acc_3_in_axes3_x, rrrrs_acc_3_in_axes3_y, rrrrs_acc_4_in_axes4_x,
+        rrrrs_acc_4_in_axes4_y, rrrrs_acc_4_in_axes4_z, rrrrs_N_3_in_axes3_z, rrrrs_G_in_axes4_y,
+        rrrrs_G_in_axes4_x, rrrrs_c_in_axes4_x, rrrrs_c_in_axes4_y, rrrrs_c_in_axes4_z;
 } values_rrrrs;
 
 INLINE void stage_rrrrs_V(size_t w, size_t j, const real *V, values_rrrrs *v)
@@ -2263,25 +2275,25 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrrrs_h_3_t_12 = m->rrrrs_branch_1[i]*root(v->rrrrs_h_3_t_11);
     const real rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - m->rrrrs_joint2_offset_x[i];
     const real rrrrs_h_3_t_14 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_13*v->rrrrs_h_3_t_6 + rrrrs_h_3_t_14;
-    const real rrrrs_h_3_t_16 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_6;
-    const real rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*v->rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18;
-    const real rrrrs_h_3_t_20 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] +
-        R(0.5)*rrrrs_h_3_t_19;
-    const real rrrrs_h_3_t_21 = rrrrs_h_3_t_18*m->rrrrs_joint4_offset_x[i];
-    const real rrrrs_h_3_t_22 = rrrrs_h_3_t_17*m->rrrrs_joint4_offset_x[i];
-    v->rrrrs_h_3_t_23 = rrrrs_h_3_t_22*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_21;
-    v->rrrrs_h_3_t_24 = v->rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20;
-    const real rrrrs_h_3_t_25 = m->rrrrs_branch_3[i]*root(v->rrrrs_h_3_t_24);
-    const real inv_rrrrs_h_3_t_23 = 1/v->rrrrs_h_3_t_23;
-    v->rrrrs_h_3_t_26 = inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 -
-        rrrrs_h_3_t_22*rrrrs_h_3_t_25);
-    v->rrrrs_h_3_t_27 = inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 +
-        rrrrs_h_3_t_21*rrrrs_h_3_t_25);
-    v->rrrrs_h_3_in_axes2_x = m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_26 -
-        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_27;
+    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_6;
+    const real rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*v->rrrrs_h_3_t_7;
+    const real rrrrs_h_3_t_17 = rrrrs_h_3_t_13*v->rrrrs_h_3_t_6 - m->rrrrs_joint3_offset_x[i]
+        + rrrrs_h_3_t_14;
+    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17;
+    const real rrrrs_h_3_t_19 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] +
+        R(0.5)*rrrrs_h_3_t_18;
+    const real rrrrs_h_3_t_20 = rrrrs_h_3_t_17*m->rrrrs_joint4_offset_x[i];
+    const real rrrrs_h_3_t_21 = rrrrs_h_3_t_16*m->rrrrs_joint4_offset_x[i];
+    v->rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21;
+    v->rrrrs_h_3_t_23 = v->rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19;
+    const real rrrrs_h_3_t_24 = m->rrrrs_branch_3[i]*root(v->rrrrs_h_3_t_23);
+    const real inv_rrrrs_h_3_t_22 = 1/v->rrrrs_h_3_t_22;
+    v->rrrrs_h_3_t_25 = inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 -
+        rrrrs_h_3_t_21*rrrrs_h_3_t_24);
+    v->rrrrs_h_3_t_26 = inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 +
+        rrrrs_h_3_t_20*rrrrs_h_3_t_24);
+    v->rrrrs_h_3_in_axes2_x = m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_25 -
+        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_26;
     /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
     const real inv_rrrrs_h_3_t_11 = 1/v->rrrrs_h_3_t_11;
     v->rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8;
@@ -2289,40 +2301,38 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9;
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
     const real rrrrs_x_4_in_axes3_x =
-        m->inv_rrrrs_size_t[i]*rrrrs_h_3_t_20*m->rrrrs_joint4_offset_x[i] -
+        m->inv_rrrrs_size_t[i]*rrrrs_h_3_t_19*m->rrrrs_joint4_offset_x[i] -
         m->rrrrs_joint4_offset_x[i];
     /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
     v->rrrrs_c_4 =
         m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
     /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
     v->rrrrs_s_4_t =
-        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*rrrrs_h_3_t_25*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i];
+        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*rrrrs_h_3_t_24*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i];
     /* (rrrrs-r_3) from joint 3 to the connection point, along the links */
-    const real rrrrs_r_3_t = m->rrrrs_platform_joint_offset_x[i]*v->rrrrs_s_4_t;
-    const real rrrrs_r_3_in_axes3_x = m->rrrrs_joint4_offset_x[i] +
-        v->rrrrs_c_4*m->rrrrs_platform_joint_offset_x[i];
-    v->rrrrs_r_3_in_axes4_x = v->rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*v->rrrrs_s_4_t;
-    v->rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*v->rrrrs_s_4_t - v->rrrrs_c_4*rrrrs_r_3_t;
+    v->rrrrs_d_4_in_axes4_x = v->rrrrs_c_4*m->rrrrs_joint4_offset_x[i];
+    v->rrrrs_r_3_in_axes4_y = m->rrrrs_joint4_offset_x[i]*v->rrrrs_s_4_t;
+    v->rrrrs_r_3_in_axes4_x = m->rrrrs_platform_joint_offset_x[i] + v->rrrrs_d_4_in_axes4_x;
     /* (rrrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrrs_r_2_t = rrrrs_h_3_t_15*v->rrrrs_h_3_t_26 +
-        rrrrs_h_3_t_17*v->rrrrs_h_3_t_27;
-    const real rrrrs_r_2_t_2 = rrrrs_h_3_t_17*v->rrrrs_h_3_t_26 -
-        rrrrs_h_3_t_15*v->rrrrs_h_3_t_27;
-    v->rrrrs_r_2_in_axes4_x = v->rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*v->rrrrs_s_4_t;
-    v->rrrrs_r_2_in_axes4_y = v->rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*v->rrrrs_s_4_t;
+    const real rrrrs_r_2_t = v->rrrrs_h_3_t_25*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_r_2_t_2 = v->rrrrs_h_3_t_26*m->rrrrs_joint3_offset_x[i];
+    v->rrrrs_d_3_in_axes4_x = v->rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*v->rrrrs_s_4_t;
+    v->rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*v->rrrrs_s_4_t - v->rrrrs_c_4*rrrrs_r_2_t_2;
+    v->rrrrs_r_2_in_axes4_x = v->rrrrs_r_3_in_axes4_x + v->rrrrs_d_3_in_axes4_x;
+    v->rrrrs_r_2_in_axes4_y = v->rrrrs_d_3_in_axes4_y + v->rrrrs_r_3_in_axes4_y;
     /* (rrrrs-v_1) velocity of the connection point per rate of joint 1 */
-    const real rrrrs_v_1_t = v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_6 -
-        v->rrrrs_h_3_t_27*v->rrrrs_h_3_t_7;
-    const real rrrrs_v_1_t_2 = -v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_7 -
-        v->rrrrs_h_3_t_27*v->rrrrs_h_3_t_6;
+    const real rrrrs_v_1_t = v->rrrrs_h_3_t_25*v->rrrrs_h_3_t_6 -
+        v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_7;
+    const real rrrrs_v_1_t_2 = -v->rrrrs_h_3_t_25*v->rrrrs_h_3_t_7 -
+        v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_6;
     v->rrrrs_e_1_in_axes4_x = v->rrrrs_c_4*rrrrs_v_1_t - v->rrrrs_s_4_t*rrrrs_v_1_t_2;
     v->rrrrs_e_1_in_axes4_y = v->rrrrs_c_4*rrrrs_v_1_t_2 + v->rrrrs_s_4_t*rrrrs_v_1_t;
     const real rrrrs_v_1_t_3 = rrrrs_h_3_t_10*v->rrrrs_h_3_t_6 + rrrrs_h_3_t_14;
-    const real rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*v->rrrrs_h_3_t_7;
-    const real rrrrs_v_1_t_5 = v->rrrrs_h_3_t_26*rrrrs_v_1_t_3 +
-        v->rrrrs_h_3_t_27*rrrrs_v_1_t_4;
-    const real rrrrs_v_1_t_6 = v->rrrrs_h_3_t_26*rrrrs_v_1_t_4 -
-        v->rrrrs_h_3_t_27*rrrrs_v_1_t_3;
+    const real rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*v->rrrrs_h_3_t_7;
+    const real rrrrs_v_1_t_5 = v->rrrrs_h_3_t_25*rrrrs_v_1_t_3 +
+        v->rrrrs_h_3_t_26*rrrrs_v_1_t_4;
+    const real rrrrs_v_1_t_6 = v->rrrrs_h_3_t_25*rrrrs_v_1_t_4 -
+        v->rrrrs_h_3_t_26*rrrrs_v_1_t_3;
     v->rrrrs_v_1_in_axes4_z = v->rrrrs_e_1_in_axes4_x*(v->rrrrs_c_4*rrrrs_v_1_t_6 +
         v->rrrrs_s_4_t*rrrrs_v_1_t_5) - v->rrrrs_e_1_in_axes4_y*(v->rrrrs_c_4*rrrrs_v_1_t_5 -
         v->rrrrs_s_4_t*rrrrs_v_1_t_6);
@@ -2338,10 +2348,10 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_w_1_y = v->axis_z_rrrrs_axes4_y*v->rrrrs_w_1_in_axes4_z;
     v->rrrrs_w_1_z = v->axis_z_rrrrs_axes4_z*v->rrrrs_w_1_in_axes4_z;
     /* (rrrrs-w_3) reciprocal vector 2 */
-    const real rrrrs_w_3_t = v->rrrrs_h_3_t_26*v->rrrrs_s_4_t -
-        v->rrrrs_c_4*v->rrrrs_h_3_t_27;
-    const real rrrrs_w_3_t_2 = v->rrrrs_c_4*v->rrrrs_h_3_t_26 +
-        v->rrrrs_h_3_t_27*v->rrrrs_s_4_t;
+    const real rrrrs_w_3_t = v->rrrrs_h_3_t_25*v->rrrrs_s_4_t -
+        v->rrrrs_c_4*v->rrrrs_h_3_t_26;
+    const real rrrrs_w_3_t_2 = v->rrrrs_c_4*v->rrrrs_h_3_t_25 +
+        v->rrrrs_h_3_t_26*v->rrrrs_s_4_t;
     const real rrrrs_w_3_t_3 = v->rrrrs_h_3_t_6*rrrrs_w_3_t - v->rrrrs_h_3_t_7*rrrrs_w_3_t_2;
     const real rrrrs_w_3_t_4 = v->rrrrs_h_3_t_6*rrrrs_w_3_t_2 + v->rrrrs_h_3_t_7*rrrrs_w_3_t;
     const real rrrrs_w_3_t_5 = v->rrrrs_c_1*rrrrs_w_3_t_4;
@@ -2366,18 +2376,12 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
     const real rrrrs_d_2_in_axes2_x = v->rrrrs_h_3_t_6*m->rrrrs_joint2_offset_x[i];
     const real rrrrs_d_2_in_axes2_y = -v->rrrrs_h_3_t_7*m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_26 +
-        rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_27;
-    const real rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_26 -
-        rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_27;
+    const real rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_25 +
+        rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_26;
+    const real rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_25 -
+        rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_26;
     v->rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v->rrrrs_c_4 - rrrrs_bias_t_4*v->rrrrs_s_4_t;
     v->rrrrs_d_2_in_axes4_y = rrrrs_bias_t_4*v->rrrrs_c_4 + rrrrs_bias_t_3*v->rrrrs_s_4_t;
-    const real rrrrs_bias_t_5 = v->rrrrs_h_3_t_26*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_bias_t_6 = v->rrrrs_h_3_t_27*m->rrrrs_joint3_offset_x[i];
-    v->rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*v->rrrrs_c_4 + rrrrs_bias_t_6*v->rrrrs_s_4_t;
-    v->rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*v->rrrrs_s_4_t - rrrrs_bias_t_6*v->rrrrs_c_4;
-    v->rrrrs_d_4_in_axes4_x = v->rrrrs_c_4*m->rrrrs_joint4_offset_x[i];
-    v->rrrrs_d_4_in_axes4_y = m->rrrrs_joint4_offset_x[i]*v->rrrrs_s_4_t;
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rrrrs_g_in_axes1_x = m->rrrrs_acc_3_t[i]*v->rrrrs_c_1 +
         m->rrrrs_acc_3_t_2[i]*v->rrrrs_s_1;
@@ -2387,10 +2391,10 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
         v->rrrrs_g_in_axes1_x*v->rrrrs_h_3_t_7;
     const real rrrrs_g_in_axes2_y = v->rrrrs_g_in_axes1_x*v->rrrrs_h_3_t_6 -
         m->rrrrs_g_in_axes1_z[i]*v->rrrrs_h_3_t_7;
-    v->rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_26 +
-        rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_27;
-    v->rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_26 -
-        rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_27;
+    v->rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_25 +
+        rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_26;
+    v->rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_25 -
+        rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_26;
     /* (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity */
     v->rrrrs_g_in_axes4_x = v->axis_x_rrrrs_axes4_x*m->gravity_x +
         v->axis_x_rrrrs_axes4_y*m->gravity_y + v->axis_x_rrrrs_axes4_z*m->gravity_z;
@@ -2399,8 +2403,8 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_g_in_axes4_z = v->axis_z_rrrrs_axes4_x*m->gravity_x +
         v->axis_z_rrrrs_axes4_y*m->gravity_y + v->axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-P_c_3) force that accelerates joint 3, per unit */
-    v->rrrrs_P_c_3_in_axes2_x = -m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_27 -
-        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_26;
+    v->rrrrs_P_c_3_in_axes2_x = -m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_26 -
+        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_25;
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->rrrrs_mu_2_t_5 = v->rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i] -
         rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i];
@@ -2477,10 +2481,10 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     /* (rrrrs-omega_1) angular velocity of link 1 */
     const real rrrrs_omega_1_in_axes2_x = v->rrrrs_h_3_t_6*v->rrrrs_qd_1;
     const real rrrrs_omega_1_in_axes2_y = -v->rrrrs_h_3_t_7*v->rrrrs_qd_1;
-    const real rrrrs_omega_1_t = v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x +
-        v->rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_omega_1_t_2 = v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y -
-        v->rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_omega_1_t = v->rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x +
+        v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y;
+    const real rrrrs_omega_1_t_2 = v->rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y -
+        v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x;
     const real rrrrs_omega_1_in_axes4_x = v->rrrrs_c_4*rrrrs_omega_1_t -
         rrrrs_omega_1_t_2*v->rrrrs_s_4_t;
     const real rrrrs_omega_1_in_axes4_y = v->rrrrs_c_4*rrrrs_omega_1_t_2 +
@@ -2514,11 +2518,11 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*v->rrrrs_qd_3;
     v->rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*v->rrrrs_qd_3;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real rrrrs_beta_3_in_axes3_x = v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_26 -
-        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_27 + v->rrrrs_zeta_3_in_axes3_x;
+    const real rrrrs_beta_3_in_axes3_x = v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_25 -
+        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_26 + v->rrrrs_zeta_3_in_axes3_x;
     const real rrrrs_beta_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y -
-        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_26 -
-        v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_27;
+        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_25 -
+        v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_26;
     const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v->rrrrs_s_4_t +
         rrrrs_beta_3_in_axes3_y*v->rrrrs_c_4;
     /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
@@ -2530,7 +2534,7 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z;
     v->rrrrs_bias_in_axes4_x = v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_2_in_axes4_y +
         v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_3_in_axes4_y +
-        v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_y -
+        v->rrrrs_W_1_in_axes4_xy*v->rrrrs_r_3_in_axes4_y -
         rrrrs_W_1_t_2*v->rrrrs_d_2_in_axes4_x -
         rrrrs_W_4_t_2*m->rrrrs_platform_joint_offset_x[i] -
         v->rrrrs_d_3_in_axes4_x*(v->rrrrs_bias_t + rrrrs_W_1_t_2) -
@@ -2540,12 +2544,12 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         v->rrrrs_W_1_in_axes4_xy*v->rrrrs_d_4_in_axes4_x +
         v->rrrrs_W_1_in_axes4_xy*m->rrrrs_platform_joint_offset_x[i] -
         rrrrs_W_1_t*v->rrrrs_d_2_in_axes4_y - v->rrrrs_d_3_in_axes4_y*(v->rrrrs_bias_t +
-        rrrrs_W_1_t) - v->rrrrs_d_4_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
+        rrrrs_W_1_t) - v->rrrrs_r_3_in_axes4_y*(rrrrs_bias_t_2 + rrrrs_W_1_t);
     v->rrrrs_bias_in_axes4_z = 2*v->rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
         2*v->rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2 +
         v->rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
         rrrrs_beta_3_in_axes4_y) +
-        v->rrrrs_d_4_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
+        v->rrrrs_r_3_in_axes4_y*(rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z +
         rrrrs_beta_3_in_axes3_x*v->rrrrs_c_4 - rrrrs_beta_3_in_axes3_y*v->rrrrs_s_4_t) +
         m->rrrrs_platform_joint_offset_x[i]*(v->rrrrs_W_4_in_axes4_xz -
         rrrrs_beta_4_in_axes4_y);
@@ -2554,8 +2558,8 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v->rrrrs_bias_t +
         rrrrs_a_o_3_t);
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_26;
-    v->rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_27;
+    v->rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_25;
+    v->rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_26;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
     const real rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
@@ -2636,10 +2640,10 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_c_4 - rrrrs_Jc_3_t);
     const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_26 -
-        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_27;
-    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_27 +
+    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_25 -
         rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_26 +
+        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_25;
     /* (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
     const real rrrrs_L_c_3_2_in_axes2_z = m->rrrrs_Jc_3_in_axes3_zz[i] +
         v->rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
@@ -2647,24 +2651,24 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7;
     /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_27;
-    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2;
-    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_27;
+    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2;
+    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_25;
+    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_26;
     const real rrrrs_Jc_2_t_6 = m->rrrrs_joint3_offset_x[i]*(m->rrrrs_Jc_2_t[i] +
         v->rrrrs_h_3_in_axes2_x);
     const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
     const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
         v->rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_26;
+        rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_25;
     const real rrrrs_Jc_2_in_axes1_zz =
         v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
-        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_26 -
-        rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_27) - rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
+        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_25 -
+        rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_26) - rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
         v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
         v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
-        v->rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_2) +
-        v->rrrrs_h_3_t_27*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_27 + rrrrs_Jc_2_t_4)));
+        v->rrrrs_h_3_t_25*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_25 + rrrrs_Jc_2_t_2) +
+        v->rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_4)));
     /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
@@ -2724,13 +2728,14 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(v->rrrrs_w_3_in_axes4_x +
         rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
     const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
+    const real rrrrs_d_c_in_axes4_zz =
+        v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i]*v->rrrrs_w_1_in_axes4_z -
+        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]*v->rrrrs_w_1_in_axes4_z -
+        rrrrs_d_Gamma_1_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
     /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
     const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
-    const real rrrrs_Q_t_3 =
-        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]*v->rrrrs_w_1_in_axes4_z -
-        v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i]*v->rrrrs_w_1_in_axes4_z +
-        rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
+    const real rrrrs_Q_t_3 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_zz;
     const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
     const real rrrrs_Q_t_5 = v->axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
         v->axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
@@ -2747,18 +2752,17 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_Q_t_11 = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 +
         v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
     v->rrrrs_Q_xx = 2*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_t_12 = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 +
+        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
+    v->rrrrs_Q_yy = 2*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx;
+    v->rrrrs_Q_t_13 = m->rrrrs_d_c_in_axes4_yy[i] + rrrrs_d_c_in_axes4_xx +
+        rrrrs_d_c_in_axes4_zz + v->rrrrs_Q_xx + v->rrrrs_Q_yy;
     v->rrrrs_Q_xy = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_5
         + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_8;
     v->rrrrs_Q_xz = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_5
         + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_8;
-    const real rrrrs_Q_t_12 = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 +
-        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
-    v->rrrrs_Q_yy = 2*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx;
     v->rrrrs_Q_yz = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
         + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_9;
-    const real rrrrs_Q_t_13 = v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 +
-        v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_10;
-    v->rrrrs_Q_zz = 2*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx;
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
     const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x -
@@ -2770,10 +2774,10 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_d_P_2_in_axes4_z =
         v->rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
         m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
-        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) -
-        rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i] +
-        v->rrrrs_r_2_in_axes4_y*(rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z*v->rrrrs_w_3_in_axes4_x
-        + rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x);
+        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
+        v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+        rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z*v->rrrrs_w_3_in_axes4_x) -
+        rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
     v->rrrrs_d_P_2_x = v->axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x +
         v->axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y +
         v->axis_z_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_z;
@@ -2790,25 +2794,22 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         - rrrrs_dy_2_Gamma_3);
     v->rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
     /* (M_ta) coupling block of M */
-    const real rrrrs_M_ta_t = v->rrrrs_Q_xy*v->rrrrs_q_z;
-    const real rrrrs_M_ta_t_2 = v->rrrrs_Q_xz*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_3 = rrrrs_M_ta_t_2 - rrrrs_M_ta_t;
-    v->rrrrs_M_ta_t_4 = v->rrrrs_Q_xx*v->rrrrs_q_z - v->rrrrs_Q_xz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_5 = v->rrrrs_Q_xx*v->rrrrs_q_y - v->rrrrs_Q_xy*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_6 = v->rrrrs_Q_yy*v->rrrrs_q_z - v->rrrrs_Q_yz*v->rrrrs_q_y;
-    const real rrrrs_M_ta_t_7 = v->rrrrs_Q_yz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7;
-    v->rrrrs_M_ta_t_9 = v->rrrrs_Q_yy*v->rrrrs_q_x - v->rrrrs_Q_xy*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_10 = v->rrrrs_Q_yz*v->rrrrs_q_z - v->rrrrs_Q_zz*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_11 = v->rrrrs_Q_xz*v->rrrrs_q_z - v->rrrrs_Q_zz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2;
+    v->rrrrs_M_ta_t = v->rrrrs_Q_xx*v->rrrrs_q_z - v->rrrrs_Q_xz*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_2 = v->rrrrs_Q_xy*v->rrrrs_q_x - v->rrrrs_Q_xx*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_3 = v->rrrrs_Q_yy*v->rrrrs_q_z - v->rrrrs_Q_yz*v->rrrrs_q_y;
+    const real rrrrs_M_ta_t_4 = v->rrrrs_Q_yz*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_5 = v->rrrrs_Q_xy*v->rrrrs_q_z - rrrrs_M_ta_t_4;
+    v->rrrrs_M_ta_t_6 = v->rrrrs_Q_yy*v->rrrrs_q_x - v->rrrrs_Q_xy*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_7 = v->rrrrs_Q_yz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_8 = v->rrrrs_Q_xz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_9 = rrrrs_M_ta_t_4 - v->rrrrs_Q_xz*v->rrrrs_q_y;
     /* (M_aa) rotational block of M */
-    v->rrrrs_M_aa_t = v->rrrrs_M_ta_t_6*v->rrrrs_q_z - v->rrrrs_M_ta_t_10*v->rrrrs_q_y;
-    v->rrrrs_M_aa_t_2 = v->rrrrs_M_ta_t_11*v->rrrrs_q_y - v->rrrrs_M_ta_t_8*v->rrrrs_q_z;
-    v->rrrrs_M_aa_t_3 = v->rrrrs_M_ta_t_12*v->rrrrs_q_y - v->rrrrs_M_ta_t_9*v->rrrrs_q_z;
-    v->rrrrs_M_aa_t_4 = v->rrrrs_M_ta_t_4*v->rrrrs_q_z - v->rrrrs_M_ta_t_11*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_5*v->rrrrs_q_z + v->rrrrs_M_ta_t_12*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_5*v->rrrrs_q_y + v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t = v->rrrrs_M_ta_t_3*v->rrrrs_q_z - v->rrrrs_M_ta_t_7*v->rrrrs_q_y;
+    v->rrrrs_M_aa_t_2 = v->rrrrs_M_ta_t_8*v->rrrrs_q_y - v->rrrrs_M_ta_t_5*v->rrrrs_q_z;
+    v->rrrrs_M_aa_t_3 = v->rrrrs_M_ta_t_9*v->rrrrs_q_y - v->rrrrs_M_ta_t_6*v->rrrrs_q_z;
+    v->rrrrs_M_aa_t_4 = v->rrrrs_M_ta_t*v->rrrrs_q_z - v->rrrrs_M_ta_t_8*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_2*v->rrrrs_q_z - v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_6*v->rrrrs_q_x - v->rrrrs_M_ta_t_2*v->rrrrs_q_y;
     /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
     v->rrrrs_M_ya_2_x = v->rrrrs_d_P_2_z*v->rrrrs_q_y - v->rrrrs_d_P_2_y*v->rrrrs_q_z;
     v->rrrrs_M_ya_2_y = v->rrrrs_d_P_2_x*v->rrrrs_q_z - v->rrrrs_d_P_2_z*v->rrrrs_q_x;
@@ -2848,11 +2849,11 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         rrrrs_alpha_2_o_in_axes2_x;
     /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real rrrrs_alpha_3_o_in_axes3_x = v->rrrrs_zeta_3_in_axes3_x +
-        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_26 +
-        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_27;
+        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_25 +
+        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_26;
     const real rrrrs_alpha_3_o_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
-        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_26 -
-        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_27;
+        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_25 -
+        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_26;
     /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
     const real rrrrs_B_3_o_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
     const real rrrrs_B_3_o_in_axes3_xz = v->rrrrs_W_3_in_axes3_xz +
@@ -2889,9 +2890,9 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_a_o_3_o_in_axes2_y =
         v->rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_27 -
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_26 -
         v->rrrrs_g_in_axes3_x + v->rrrrs_acc_3_t_3;
-    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_26 -
+    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_25 -
         v->rrrrs_g_in_axes3_y + v->rrrrs_acc_3_t_4;
     const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
         - v->rrrrs_g_in_axes1_y;
@@ -2978,13 +2979,13 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
-        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_26 - rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_27;
+        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_25 - rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_26;
     const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y -
         rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_27 + rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_26;
+        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_26 + rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_25;
     const real rrrrs_N_2_o_in_axes2_z = rrrrs_mu_2_o_in_axes2_z +
-        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_o_in_axes3_x*v->rrrrs_h_3_t_27 +
-        rrrrs_f_3_o_in_axes3_y*v->rrrrs_h_3_t_26) + rrrrs_N_3_o_in_axes3_z;
+        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_o_in_axes3_x*v->rrrrs_h_3_t_26 +
+        rrrrs_f_3_o_in_axes3_y*v->rrrrs_h_3_t_25) + rrrrs_N_3_o_in_axes3_z;
     /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o -
@@ -3051,11 +3052,11 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_2_in_axes2_zy = v->rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x;
     /* (rrrrs-alpha_3) angular acceleration of link 3 */
     const real rrrrs_alpha_3_in_axes3_x = v->rrrrs_zeta_3_in_axes3_x +
-        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_26 +
-        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_27;
+        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_25 +
+        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_26;
     const real rrrrs_alpha_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
-        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_26 -
-        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_27;
+        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_25 -
+        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_26;
     const real rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 + v->rrrrs_qdd_3;
     /* (rrrrs-B_3) acceleration tensor of link 3 */
     v->rrrrs_B_3_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z;
@@ -3080,9 +3081,9 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_in_axes2_y = v->rrrrs_B_2_in_axes2_yx*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_27 -
+    v->rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_26 -
         v->rrrrs_g_in_axes3_x + v->rrrrs_acc_3_t_3;
-    v->rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_26 -
+    v->rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_25 -
         v->rrrrs_g_in_axes3_y + v->rrrrs_acc_3_t_4;
     const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*m->rrrrs_joint3_offset_x[i] -
         v->rrrrs_g_in_axes1_y;
@@ -3155,10 +3156,10 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_x = rrrrs_mu_2_in_axes2_x +
-        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_26 - rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_27;
+        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_25 - rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_26;
     const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y -
         rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_27 + rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_26;
+        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_26 + rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_25;
     /* (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrrrs_mu_1_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*v->rrrrs_qdd_1 -
         v->rrrrs_mu_1_t;
@@ -3185,28 +3186,27 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
 
 typedef struct {
     real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_h_2_t_9, rrrs_h_2_t_16, rrrs_h_2_t_17, rrrs_h_2_t_19,
-        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_r_2_in_axes3_x,
-        rrrs_r_2_in_axes3_y, rrrs_e_1_in_axes3_x, rrrs_e_1_in_axes3_y, rrrs_v_1_in_axes3_z,
-        axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z, rrrs_w_1_in_axes3_z,
-        rrrs_w_1_x, rrrs_w_1_y, rrrs_w_1_z, axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y,
-        axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x, axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z,
-        rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t, rrrs_bias_t_2,
-        rrrs_d_3_in_axes3_x, rrrs_d_3_in_axes3_y, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y,
-        rrrs_g_in_axes3_z, rrrs_g_in_axes1_x, rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10,
-        rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x, rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x,
-        rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t, rrrs_S_dot_t_2, rrrs_S_dot_t_3, rrrs_qd_1,
-        rrrs_qd_2_t, rrrs_qd_3, rrrs_W_2_in_axes2_yz, rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy,
-        rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz, rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x,
-        rrrs_zeta_3_t, rrrs_bias_in_axes3_x, rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z,
-        rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6, rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8,
-        rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3, rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y,
-        rrrs_S_ddot_in_axes3_z, rrrs_qdd_1, rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz,
-        rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
-        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-        rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
-        rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x,
-        rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x, rrrs_c_in_axes3_y,
-        rrrs_c_in_axes3_z;
+        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x,
+        rrrs_e_1_in_axes3_y, axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z,
+        axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x,
+        axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y,
+        rrrs_r_2_in_axes3_x, rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y,
+        rrrs_w_1_z, rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t,
+        rrrs_bias_t_2, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x,
+        rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x,
+        rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3,
+        rrrs_S_dot_t_4, rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz,
+        rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz,
+        rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x,
+        rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
+        rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
+        rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
+        rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
+        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
+        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
+        rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
+        rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z,
+        rrrs_c_in_axes3_x, rrrs_c_in_axes3_y, rrrs_c_in_axes3_z;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -3270,46 +3270,45 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
     v->rrrs_s_3_t =
         m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*rrrs_h_2_t_18*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i];
-    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrs_r_2_t = m->rrrs_platform_joint_offset_x[i]*v->rrrs_s_3_t;
-    const real rrrs_r_2_in_axes2_x = m->rrrs_joint3_offset_x[i] +
-        v->rrrs_c_3*m->rrrs_platform_joint_offset_x[i];
-    v->rrrs_r_2_in_axes3_x = v->rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*v->rrrs_s_3_t;
-    v->rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*v->rrrs_s_3_t - v->rrrs_c_3*rrrs_r_2_t;
-    /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+    /* (rrrs-S_dot) velocity of the connection point */
     v->rrrs_e_1_in_axes3_x = v->rrrs_c_3*v->rrrs_h_2_t_19 + v->rrrs_h_2_t_20*v->rrrs_s_3_t;
     v->rrrs_e_1_in_axes3_y = v->rrrs_h_2_t_19*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_h_2_t_20;
-    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
-    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
-    v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
-        v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
-        v->rrrs_s_3_t*rrrs_v_1_t_2);
-    /* (rrrs-w_1) reciprocal vector 1 */
     v->axis_z_rrrs_axes3_x = m->rrrs_base_frame_xz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_xy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_y = m->rrrs_base_frame_yz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_yy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_z = m->rrrs_base_frame_zz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_zy[i]*v->rrrs_s_1;
-    v->rrrs_w_1_in_axes3_z = 1/v->rrrs_v_1_in_axes3_z;
-    v->rrrs_w_1_x = v->axis_z_rrrs_axes3_x*v->rrrs_w_1_in_axes3_z;
-    v->rrrs_w_1_y = v->axis_z_rrrs_axes3_y*v->rrrs_w_1_in_axes3_z;
-    v->rrrs_w_1_z = v->axis_z_rrrs_axes3_z*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    const real rrrs_w_2_t = v->rrrs_c_1*v->rrrs_e_1_in_axes3_x;
-    const real rrrs_w_2_t_2 = v->rrrs_e_1_in_axes3_x*v->rrrs_s_1;
+    const real rrrs_S_dot_t = v->rrrs_c_1*v->rrrs_e_1_in_axes3_x;
+    const real rrrs_S_dot_t_2 = v->rrrs_e_1_in_axes3_x*v->rrrs_s_1;
     v->axis_y_rrrs_axes3_x = m->rrrs_base_frame_xx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_xy[i]*rrrs_w_2_t + m->rrrs_base_frame_xz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_xy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_xz[i];
     v->axis_y_rrrs_axes3_y = m->rrrs_base_frame_yx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_yy[i]*rrrs_w_2_t + m->rrrs_base_frame_yz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_yy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_yz[i];
     v->axis_y_rrrs_axes3_z = m->rrrs_base_frame_zx[i]*v->rrrs_e_1_in_axes3_y +
-        m->rrrs_base_frame_zy[i]*rrrs_w_2_t + m->rrrs_base_frame_zz[i]*rrrs_w_2_t_2;
+        rrrs_S_dot_t*m->rrrs_base_frame_zy[i] + rrrs_S_dot_t_2*m->rrrs_base_frame_zz[i];
     v->axis_x_rrrs_axes3_x = v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_z -
         v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_y;
     v->axis_x_rrrs_axes3_y = v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_x -
         v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_z;
     v->axis_x_rrrs_axes3_z = v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_y -
         v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_x;
+    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+    v->rrrs_d_3_in_axes3_x = v->rrrs_c_3*m->rrrs_joint3_offset_x[i];
+    v->rrrs_r_2_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
+    v->rrrs_r_2_in_axes3_x = m->rrrs_platform_joint_offset_x[i] + v->rrrs_d_3_in_axes3_x;
+    /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
+    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
+    v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
+        v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
+        v->rrrs_s_3_t*rrrs_v_1_t_2);
+    /* (rrrs-w_1) reciprocal vector 1 */
+    v->rrrs_w_1_in_axes3_z = 1/v->rrrs_v_1_in_axes3_z;
+    v->rrrs_w_1_x = v->axis_z_rrrs_axes3_x*v->rrrs_w_1_in_axes3_z;
+    v->rrrs_w_1_y = v->axis_z_rrrs_axes3_y*v->rrrs_w_1_in_axes3_z;
+    v->rrrs_w_1_z = v->axis_z_rrrs_axes3_z*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
     v->rrrs_w_2_in_axes3_x = -1/v->rrrs_r_2_in_axes3_y;
     v->rrrs_w_2_x = v->axis_x_rrrs_axes3_x*v->rrrs_w_2_in_axes3_x;
     v->rrrs_w_2_y = v->axis_x_rrrs_axes3_y*v->rrrs_w_2_in_axes3_x;
@@ -3317,8 +3316,6 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
     v->rrrs_bias_t = v->rrrs_h_2_t_19*m->rrrs_joint2_offset_x[i];
     v->rrrs_bias_t_2 = v->rrrs_h_2_t_20*m->rrrs_joint2_offset_x[i];
-    v->rrrs_d_3_in_axes3_x = v->rrrs_c_3*m->rrrs_joint3_offset_x[i];
-    v->rrrs_d_3_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
     /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rrrs_g_in_axes3_x = v->axis_x_rrrs_axes3_x*m->gravity_x +
         v->axis_x_rrrs_axes3_y*m->gravity_y + v->axis_x_rrrs_axes3_z*m->gravity_z;
@@ -3358,44 +3355,45 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     /* (rrrs-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    v->rrrs_S_dot_t = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
+    v->rrrs_S_dot_t_3 = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
     const real omega_x = V[3*w + j];
-    v->rrrs_S_dot_t_2 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
-    v->rrrs_S_dot_t_3 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
+    v->rrrs_S_dot_t_4 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
+    v->rrrs_S_dot_t_5 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrrs_S_dot_x = t_dot_x + v->rrrs_S_dot_t;
+    const real rrrs_S_dot_x = t_dot_x + v->rrrs_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrrs_S_dot_y = t_dot_y + v->rrrs_S_dot_t_2;
+    const real rrrs_S_dot_y = t_dot_y + v->rrrs_S_dot_t_4;
     const real t_dot_z = V[2*w + j];
-    const real rrrs_S_dot_z = t_dot_z + v->rrrs_S_dot_t_3;
+    const real rrrs_S_dot_z = t_dot_z + v->rrrs_S_dot_t_5;
+    const real rrrs_S_dot_in_axes3_x = v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z;
     /* (rrrs-qd_1) rate of joint 1 */
     v->rrrs_qd_1 = v->rrrs_w_1_in_axes3_z*(v->axis_z_rrrs_axes3_x*rrrs_S_dot_x +
         v->axis_z_rrrs_axes3_y*rrrs_S_dot_y + v->axis_z_rrrs_axes3_z*rrrs_S_dot_z);
     /* (rrrs-qd_2) rate of joint 2 */
-    v->rrrs_qd_2_t = -v->rrrs_w_2_in_axes3_x*(v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-        v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+    v->rrrs_qd_2 = rrrs_S_dot_in_axes3_x*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-qd_3) rate of joint 3 */
     v->rrrs_qd_3 = m->rrrs_w_3_in_axes3_y[i]*(v->axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-        v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z +
-        v->rrrs_qd_2_t*v->rrrs_r_2_in_axes3_x);
+        v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+        v->rrrs_qd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-omega_1) angular velocity of link 1 */
     const real rrrs_omega_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qd_1;
-    const real rrrs_omega_1_t = v->rrrs_h_2_t_20*v->rrrs_qd_1;
-    const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x +
-        rrrs_omega_1_t*v->rrrs_s_3_t;
-    const real rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*v->rrrs_s_3_t -
-        v->rrrs_c_3*rrrs_omega_1_t;
+    const real rrrs_omega_1_in_axes2_y = -v->rrrs_h_2_t_20*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x -
+        rrrs_omega_1_in_axes2_y*v->rrrs_s_3_t;
+    const real rrrs_omega_1_in_axes3_y = v->rrrs_c_3*rrrs_omega_1_in_axes2_y +
+        rrrs_omega_1_in_axes2_x*v->rrrs_s_3_t;
     /* (rrrs-W_2) centripetal tensor of link 2 */
-    v->rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*v->rrrs_qd_2_t;
-    v->rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t;
+    v->rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*v->rrrs_qd_2;
+    v->rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
     /* (rrrs-omega_3) angular velocity of link 3 */
-    const real rrrs_omega_3_in_axes3_z = v->rrrs_qd_3 - v->rrrs_qd_2_t;
+    const real rrrs_omega_3_in_axes3_z = v->rrrs_qd_2 + v->rrrs_qd_3;
     /* (rrrs-W_3) centripetal tensor of link 3 */
     v->rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
     v->rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
     v->rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
     /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    v->rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*v->rrrs_qd_2_t;
+    v->rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*v->rrrs_qd_2;
     const real rrrs_zeta_2_in_axes3_y = v->rrrs_W_2_in_axes2_yz*v->rrrs_s_3_t +
         v->rrrs_c_3*v->rrrs_zeta_2_in_axes2_y;
     /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
@@ -3407,23 +3405,23 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(v->rrrs_bias_t*v->rrrs_s_3_t -
         v->rrrs_bias_t_2*v->rrrs_c_3) - rrrs_omega_1_in_axes3_y*(v->rrrs_bias_t*v->rrrs_c_3 +
         v->rrrs_bias_t_2*v->rrrs_s_3_t);
-    const real rrrs_bias_t_4 = v->rrrs_d_3_in_axes3_y*v->rrrs_qd_2_t;
-    const real rrrs_bias_t_5 = v->rrrs_d_3_in_axes3_x*v->rrrs_qd_2_t;
-    const real rrrs_bias_t_6 = v->rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+    const real rrrs_bias_t_4 = v->rrrs_d_3_in_axes3_x*v->rrrs_qd_2;
+    const real rrrs_bias_t_5 = rrrs_omega_1_in_axes3_x*v->rrrs_r_2_in_axes3_y -
         v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
-    const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     v->rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_5*v->rrrs_qd_2_t + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z;
-    v->rrrs_bias_in_axes3_y = rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_4*v->rrrs_qd_2_t - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-        rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-    v->rrrs_bias_in_axes3_z = v->rrrs_d_3_in_axes3_y*(v->rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
-        v->rrrs_s_3_t*v->rrrs_zeta_2_in_axes2_y) - rrrs_bias_t_4*rrrs_omega_1_in_axes3_y -
-        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x - v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
-        + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
-        rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
+        rrrs_bias_t_4*v->rrrs_qd_2 + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_y - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z;
+    v->rrrs_bias_in_axes3_y = rrrs_S_dot_in_axes3_x*v->rrrs_qd_2 +
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+        rrrs_bias_t_5*rrrs_omega_1_in_axes3_x;
+    v->rrrs_bias_in_axes3_z = rrrs_bias_t_4*rrrs_omega_1_in_axes3_x -
+        rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y +
+        v->rrrs_r_2_in_axes3_y*(v->rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
+        v->rrrs_s_3_t*v->rrrs_zeta_2_in_axes2_y) -
+        v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        - rrrs_beta_3_in_axes3_y*m->rrrs_platform_joint_offset_x[i];
     /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
     const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
@@ -3433,8 +3431,8 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->rrrs_mu_3_t_6 = m->rrrs_J_3_in_spec3_xy[i]*(rrrs_mu_3_t - rrrs_mu_3_t_2);
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-    const real rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t;
-    const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
+    const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+    const real rrrs_mu_2_t_5 = v->rrrs_qd_2*v->rrrs_qd_2;
     v->rrrs_mu_2_t_6 = m->rrrs_J_2_in_spec2_yz[i]*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5);
     v->rrrs_mu_2_t_7 = m->rrrs_J_2_in_spec2_xz[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5);
     v->rrrs_mu_2_t_8 = m->rrrs_J_2_in_spec2_xy[i]*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4);
@@ -3545,13 +3543,14 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
         m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_zz =
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
+        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
     /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
     const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z +
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z +
-        rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
     const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
     const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
         v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
@@ -3568,38 +3567,34 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
     v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
+    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
+        + v->rrrs_Q_xx + v->rrrs_Q_yy;
     v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
     v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
         v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
-    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
     v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
         v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
-    const real rrrs_Q_t_13 = v->axis_y_rrrs_axes3_z*rrrs_Q_t_7 +
-        v->axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-    v->rrrs_Q_zz = 2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
     /* (M_ta) coupling block of M */
-    const real rrrs_M_ta_t = v->rrrs_Q_xy*v->rrrs_q_z;
-    const real rrrs_M_ta_t_2 = v->rrrs_Q_xz*v->rrrs_q_y;
-    v->rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t;
-    v->rrrs_M_ta_t_4 = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_x - v->rrrs_Q_xx*v->rrrs_q_y;
-    v->rrrs_M_ta_t_6 = v->rrrs_Q_yz*v->rrrs_q_y - v->rrrs_Q_yy*v->rrrs_q_z;
-    const real rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-    v->rrrs_M_ta_t_9 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
-    v->rrrs_M_ta_t_10 = v->rrrs_Q_zz*v->rrrs_q_y - v->rrrs_Q_yz*v->rrrs_q_z;
-    v->rrrs_M_ta_t_11 = v->rrrs_Q_xz*v->rrrs_q_z - v->rrrs_Q_zz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
+    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
+    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
+    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
+    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
+    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
+    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
+    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
     /* (M_aa) rotational block of M */
-    v->rrrs_M_aa_t = v->rrrs_M_ta_t_10*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
-    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_11*v->rrrs_q_y - v->rrrs_M_ta_t_8*v->rrrs_q_z;
-    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_12*v->rrrs_q_y - v->rrrs_M_ta_t_9*v->rrrs_q_z;
-    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t_4*v->rrrs_q_z - v->rrrs_M_ta_t_11*v->rrrs_q_x;
-    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_5*v->rrrs_q_z - v->rrrs_M_ta_t_12*v->rrrs_q_x;
-    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_9*v->rrrs_q_x - v->rrrs_M_ta_t_5*v->rrrs_q_y;
+    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
+    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
+    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
+    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
+    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
+    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
 }
 
 INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -3608,10 +3603,10 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-u_1) centripetal acceleration of the connection point */
     const real omega_y = V[4*w + j];
     const real omega_z = V[5*w + j];
-    const real rrrs_u_1_x = omega_y*v->rrrs_S_dot_t_3 - omega_z*v->rrrs_S_dot_t_2;
+    const real rrrs_u_1_x = omega_y*v->rrrs_S_dot_t_5 - omega_z*v->rrrs_S_dot_t_4;
     const real omega_x = V[3*w + j];
-    const real rrrs_u_1_y = omega_z*v->rrrs_S_dot_t - omega_x*v->rrrs_S_dot_t_3;
-    const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t;
+    const real rrrs_u_1_y = omega_z*v->rrrs_S_dot_t_3 - omega_x*v->rrrs_S_dot_t_5;
+    const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_4 - omega_y*v->rrrs_S_dot_t_3;
     const real rrrs_u_1_in_axes3_x = v->axis_x_rrrs_axes3_x*rrrs_u_1_x +
         v->axis_x_rrrs_axes3_y*rrrs_u_1_y + v->axis_x_rrrs_axes3_z*rrrs_u_1_z;
     const real rrrs_u_1_in_axes3_y = v->axis_y_rrrs_axes3_x*rrrs_u_1_x +
@@ -3838,11 +3833,8 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3858,14 +3850,86 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[(3 + 2*i)*w + k] = o[0*count + at];
+    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
+    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
+    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
+    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
+    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
+    H[(4 + 2*i)*w + k] = o[6*count + at];
+    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
+    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
+    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
+    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
+    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
+    t->unreachable[k] += o[12*count + at];
+    t->singular[k] += o[13*count + at];
+    t->total[k] += o[14*count + at];
+}
+
+INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -3893,32 +3957,31 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     gather(&terms[2*count + k], add, v.rrrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, -v.rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, -v.rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
+    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
+    gather(&terms[8*count + k], add, v.rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, -v.rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_t */
-    gather(&terms[20*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.rrrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.rrrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.rrrrs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.rrrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.rrrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.rrrrs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.rrrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 2 */
     o[0*count + k] = v.rrrrs_P_2_o;
@@ -3967,11 +4030,11 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
         ((v.rrrrs_w_3_y + (v.rrrrs_w_3_z + v.rrrrs_H_a_3_x)) + (v.rrrrs_H_a_3_y +
         (v.rrrrs_H_a_3_z + v.rrrrs_w_3_t_7))));
     o[29*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void dynamics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4024,32 +4087,31 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[26*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
+    gather(&terms[27*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
+    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[28*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_t */
+    gather(&terms[29*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_t_2 */
+    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[30*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_t_3 */
+    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[27*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[31*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
+    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[21*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) */
-    gather(&terms[24*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (rrrs-w_1) reciprocal vector 1 */
     o[0*count + k] = v.rrrs_w_1_x;
     o[1*count + k] = v.rrrs_w_1_y;
@@ -4077,26 +4139,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void dynamics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[(3 + 2*i)*w + k] = o[0*count + at];
-    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
-    H[(4 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -4106,61 +4148,71 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_rrrrs_yy = sums[6*w + k];
+    const real M_ta_rrrrs_zz = sums[7*w + k];
+    const real M_ta_rrrs_yy = sums[26*w + k];
+    const real M_ta_rrrs_zz = sums[27*w + k];
+    const real M_ta_xx = -M_ta_rrrs_yy - M_ta_rrrs_zz - M_ta_rrrrs_yy - M_ta_rrrrs_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_t = sums[28*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y - M_ta_t;
+    const real M_ta_t_2 = sums[29*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z - M_ta_t_2;
+    const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_t_3 = sums[30*w + k];
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_t_3 + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_t = sums[19*w + k];
-    const real M_aa_yz_of_legs = sums[27*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs - M_aa_t;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_t = sums[31*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_t + M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -4177,7 +4229,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -4186,7 +4237,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -4195,7 +4245,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -4225,12 +4274,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[28] = {0};
-    real terms_rrrrs[28*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[28*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[33] CLEARED, sums[32] CLEARED;
+    real terms_rrrrs[32*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[32*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         dynamics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
@@ -4240,13 +4289,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         dynamics_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, Z, H, t);
     }
-    for (size_t n = 0; n < 28; ++n) {
+    for (size_t n = 0; n < 32; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        dynamics_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
+        any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 28; ++n) {
+    for (size_t n = 0; n < 32; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -4258,16 +4307,16 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[28*LANES];
+    real s[33*LANES], sums[32*LANES];
     real o_rrrrs[31*LANES];
     real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 28*LANES);
+    clear(sums, 32*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrrs);
@@ -4281,7 +4330,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+            any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4290,31 +4339,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -4327,24 +4351,23 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     gather(&terms[2*count + k], add, v.rrrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, -v.rrrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, -v.rrrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
+    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
+    gather(&terms[8*count + k], add, v.rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, -v.rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_t */
-    gather(&terms[20*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 2 */
     o[0*count + k] = v.rrrrs_d_P_2_x;
@@ -4366,11 +4389,11 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     o[15*count + k] = (v.rrrrs_d_P_2_x + (v.rrrrs_d_P_2_y + v.rrrrs_d_P_2_z)) +
         ((v.rrrrs_M_ya_2_x + v.rrrrs_M_ya_2_y) + (v.rrrrs_M_ya_2_z + v.rrrrs_dy_2_P_2));
     o[14*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void M_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *M,
@@ -4406,36 +4429,29 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_zz);  /* M_tt_zz_of_legs */
+    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.rrrs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[20*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
+    gather(&terms[21*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
+    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[22*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_t */
+    gather(&terms[23*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_t_2 */
+    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[24*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_t_3 */
+    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[21*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[25*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
+    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
         TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
         TOLERANCE*m->rrrs_size[i]);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-}
-
-INLINE void M_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -4447,42 +4463,52 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
-    const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
+    const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_rrrrs_yy = sums[6*w + k];
+    const real M_ta_rrrrs_zz = sums[7*w + k];
+    const real M_ta_rrrs_yy = sums[20*w + k];
+    const real M_ta_rrrs_zz = sums[21*w + k];
+    const real M_ta_xx = -M_ta_rrrs_yy - M_ta_rrrs_zz - M_ta_rrrrs_yy - M_ta_rrrrs_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_t = sums[22*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_xz = M_ta_xz_of_legs - h_star_y - M_ta_t;
+    const real M_ta_t_2 = sums[23*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
+    const real M_ta_yx = M_ta_yx_of_legs - h_star_z - M_ta_t_2;
+    const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
+    const real M_ta_t_3 = sums[24*w + k];
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_t_3 + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_t = sums[19*w + k];
-    const real M_aa_yz_of_legs = sums[21*w + k];
-    const real M_aa_yz = J_star_yz + M_aa_yz_of_legs - M_aa_t;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_t = sums[25*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
+    const real M_aa_yz = J_star_yz - M_aa_t + M_aa_yz_of_legs;
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -4498,7 +4524,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -4507,7 +4532,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -4516,7 +4540,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -4537,11 +4560,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[22] = {0};
-    real terms_rrrrs[22*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[22*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[27] CLEARED, sums[26] CLEARED;
+    real terms_rrrrs[26*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         M_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
@@ -4551,13 +4574,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         M_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, t);
     }
-    for (size_t n = 0; n < 22; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        M_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 22; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -4568,14 +4591,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[22*LANES];
+    real s[27*LANES], sums[26*LANES];
     real o_rrrrs[16*LANES];
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 22*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrrs);
@@ -4589,7 +4612,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrrs(k, k, LANES, o_rrrs, t);
+            any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4598,22 +4621,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -4646,11 +4653,11 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     o[0*count + k] = v.rrrrs_P_2_o;
     o[3*count + k] = v.rrrrs_P_2_o;
     o[2*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[1*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[1*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void Z_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *Z,
@@ -4683,12 +4690,6 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
         TOLERANCE*m->rrrs_size[i]);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-}
-
-INLINE void Z_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -4726,11 +4727,11 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         Z_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
@@ -4744,7 +4745,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        Z_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
@@ -4763,7 +4764,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrrs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -4780,7 +4781,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrrs(k, k, LANES, o_rrrs, t);
+            any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4789,22 +4790,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -4835,11 +4820,11 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
         v.rrrrs_w_3_z)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
         v.rrrrs_w_3_t_7)));
     o[15*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[14*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[14*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void H_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
@@ -4896,34 +4881,14 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void H_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[(3 + 2*i)*w + k] = o[0*count + at];
-    H[(NU + 3 + 2*i)*w + k] = o[1*count + at];
-    H[(2*NU + 3 + 2*i)*w + k] = o[2*count + at];
-    H[(3*NU + 3 + 2*i)*w + k] = o[3*count + at];
-    H[(4*NU + 3 + 2*i)*w + k] = o[4*count + at];
-    H[(5*NU + 3 + 2*i)*w + k] = o[5*count + at];
-    H[(4 + 2*i)*w + k] = o[6*count + at];
-    H[(NU + 4 + 2*i)*w + k] = o[7*count + at];
-    H[(2*NU + 4 + 2*i)*w + k] = o[8*count + at];
-    H[(3*NU + 4 + 2*i)*w + k] = o[9*count + at];
-    H[(4*NU + 4 + 2*i)*w + k] = o[10*count + at];
-    H[(5*NU + 4 + 2*i)*w + k] = o[11*count + at];
-    t->unreachable[k] += o[12*count + at];
-    t->singular[k] += o[13*count + at];
-    t->total[k] += o[14*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
-    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         H_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
@@ -4934,7 +4899,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        H_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
+        any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
 }
 
@@ -4947,7 +4912,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4962,39 +4927,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
+            any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -5005,9 +4943,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -5037,27 +4972,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -5092,8 +5024,8 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_z = rrrrs_mu_2_in_axes2_z +
-        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_in_axes3_x*v.rrrrs_h_3_t_27 +
-        rrrrs_f_3_in_axes3_y*v.rrrrs_h_3_t_26) + v.rrrrs_N_3_in_axes3_z;
+        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_in_axes3_x*v.rrrrs_h_3_t_26 +
+        rrrrs_f_3_in_axes3_y*v.rrrrs_h_3_t_25) + v.rrrrs_N_3_in_axes3_z;
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrrrs_c_x = v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
@@ -5144,11 +5076,11 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-w_3) */
     o[14*count + k] = v.rrrrs_w_3_t_7;
     o[16*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[15*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[15*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void required_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5280,17 +5212,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
-        required_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, A, terms_rrrrs, o_rrrrs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
+            required_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, A,
+                terms_rrrrs, o_rrrrs);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        required_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A, terms_rrrs, o_rrrs);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            required_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A,
+                terms_rrrs, o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         required_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, required, H, t);
@@ -5319,7 +5257,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -5345,22 +5283,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
@@ -5369,7 +5291,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     /* (rrrrs-q_1) displacement of joint 1 */
     const real rrrrs_q_1 = angle(v.rrrrs_s_1, v.rrrrs_c_1);
     /* (rrrrs-q_3) displacement of joint 3 */
-    const real rrrrs_q_3 = angle(v.rrrrs_h_3_t_27, v.rrrrs_h_3_t_26);
+    const real rrrrs_q_3 = angle(v.rrrrs_h_3_t_26, v.rrrrs_h_3_t_25);
     /* (rrrrs-q_4) displacement of joint 4 */
     const real rrrrs_q_4 = angle(-v.rrrrs_s_4_t, v.rrrrs_c_4);
     /* (rrrrs-q_1) */
@@ -5383,9 +5305,9 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     o[3*count + k] = rrrrs_q_4;
     o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
     o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void inverse_kinematics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real
@@ -5437,11 +5359,11 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         inverse_kinematics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
@@ -5464,7 +5386,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5485,22 +5407,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -5519,11 +5425,11 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t
     o[3*count + k] = v.rrrrs_qd_4;
     o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3 + v.rrrrs_qd_4);
     o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void joint_rates_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -5547,10 +5453,10 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-qd_1) rate of joint 1 */
     o[0*count + k] = v.rrrs_qd_1;
     /* (rrrs-qd_2) rate of joint 2 */
-    o[1*count + k] = -v.rrrs_qd_2_t;
+    o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2_t + v.rrrs_qd_3);
+    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
     o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
@@ -5573,11 +5479,11 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_rates_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, o_rrrrs);
     }
@@ -5600,7 +5506,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5621,33 +5527,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -5668,11 +5547,11 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     o[3*count + k] = v.rrrrs_qdd_4;
     o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3 + v.rrrrs_qdd_4);
     o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void joint_accelerations_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const
@@ -5723,11 +5602,11 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] = {0};
-    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_accelerations_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
@@ -5750,7 +5629,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrrs[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5771,33 +5650,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -5837,11 +5689,11 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     o[7*count + k] = v.rrrrs_w_3_y;
     o[8*count + k] = v.rrrrs_w_3_z;
     o[10*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[9*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[9*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void legs_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5923,17 +5775,21 @@ INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t coun
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] = {0};
-    real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED;
+    real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real o_rrrs[11*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(actuator, 21);
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
-        legs_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
+            legs_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        legs_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            legs_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         legs_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, leg_force, actuator, t);
@@ -5944,22 +5800,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -5987,10 +5827,10 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         m->rrrrs_h_4_in_spec4_y[i]*v.rrrrs_s_4_t;
     const real rrrrs_potential_t_6 = v.rrrrs_c_4*m->rrrrs_h_4_in_spec4_y[i] -
         m->rrrrs_h_4_in_spec4_x[i]*v.rrrrs_s_4_t;
-    const real rrrrs_potential_t_7 = v.rrrrs_h_3_t_26*rrrrs_potential_t_5 -
-        v.rrrrs_h_3_t_27*rrrrs_potential_t_6;
-    const real rrrrs_potential_t_8 = v.rrrrs_h_3_t_26*rrrrs_potential_t_6 +
-        v.rrrrs_h_3_t_27*rrrrs_potential_t_5;
+    const real rrrrs_potential_t_7 = v.rrrrs_h_3_t_25*rrrrs_potential_t_5 -
+        v.rrrrs_h_3_t_26*rrrrs_potential_t_6;
+    const real rrrrs_potential_t_8 = v.rrrrs_h_3_t_25*rrrrs_potential_t_6 +
+        v.rrrrs_h_3_t_26*rrrrs_potential_t_5;
     const real rrrrs_potential_t_9 = m->rrrrs_h_1_in_spec1_x[i] + m->rrrrs_potential_t_3[i] +
         m->rrrrs_potential_t_4[i] + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_6 -
         m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_7 +
@@ -6015,16 +5855,9 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     /* (potential) */
     gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
-    o[0*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
-}
-
-INLINE void potential_place_rrrrs(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
+    o[0*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -6062,13 +5895,6 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
-INLINE void potential_place_rrrs(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -6082,25 +5908,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[2] = {0};
-    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[19] CLEARED, sums[2] CLEARED;
+    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
-        potential_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
+            potential_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs,
+                o_rrrrs);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
-        potential_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
+            potential_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs,
+                o_rrrs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
-        potential_place_rrrrs(0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
-        potential_place_rrrs(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
+        any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
@@ -6139,7 +5971,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrrrs_pivot_size = magnitude(v.rrrrs_h_3_t_11);
-    const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_h_3_t_23);
+    const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_h_3_t_22);
     const real rrrrs_pivot_size_3 = magnitude(v.rrrrs_v_1_in_axes4_z);
     const real rrrrs_pivot_size_4 = magnitude(v.rrrrs_r_3_in_axes4_y);
     const real rrrrs_least_pivots =
@@ -6176,17 +6008,17 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     o[13*count + k] = v.rrrrs_w_3_t_7;
     /* (rrrrs-G) */
     o[14*count + k] = rrrrs_least_pivots;
-    o[15*count + k] = v.rrrrs_h_3_t_24;
+    o[15*count + k] = v.rrrrs_h_3_t_23;
     o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
         v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) + (((v.rrrrs_w_3_y +
         v.rrrrs_w_3_z) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
-        v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_h_3_t_24)));
+        v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_h_3_t_23)));
     o[17*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_23) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
         TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
         TOLERANCE*m->rrrrs_size[i]);
-    o[16*count + k] = UNLESS(v.rrrrs_h_3_t_24 >= 0);
+    o[16*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void condition_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -6304,9 +6136,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[2] = {0};
-    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] = {0};
-    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] CLEARED, sums[2] CLEARED;
+    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -6337,7 +6169,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
 {
-    real M[NV*NV] = {0};
+    real M[NV*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6362,7 +6194,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 
 int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    real Z[NV] = {0};
+    real Z[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6388,7 +6220,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
 
 int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
 {
-    real H[NV*NU] = {0};
+    real H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6413,7 +6245,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 
 int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    real q[NJ] = {0};
+    real q[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6439,7 +6271,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
 int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
-    real qd[NJ] = {0};
+    real qd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6467,7 +6299,7 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
 int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
-    real qdd[NJ] = {0};
+    real qdd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6496,7 +6328,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out,
     real *Z_out, real *H_out)
 {
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6533,7 +6365,7 @@ int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, co
     real *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[7] = {0}, subtract_1[NV] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, extend_1[7] CLEARED, subtract_1[NV] CLEARED,
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -6582,8 +6414,8 @@ int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, co
     real *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[7] = {0}, add_1[NV]
-        = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, extend_1[7] CLEARED,
+        add_1[NV] CLEARED, subtract_1[NV] CLEARED, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -6654,7 +6486,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 0, 1, 1, 2, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[21] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[21] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6671,7 +6503,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
 int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *V, real
     *kinetic_out, real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6693,8 +6525,8 @@ int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sig
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6725,9 +6557,9 @@ int hybrid_3rrrs_redundant_manipulability(const prepared *m, const real *X, real
     real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6759,9 +6591,9 @@ int hybrid_3rrrs_redundant_singularity_distance(const prepared *m, const real *X
     *actuators_out, real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6793,8 +6625,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2, 3, 4, 5, 6};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[7] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[7] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -6812,7 +6644,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real slope[NV*NU] = {0};
+    real slope[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6885,7 +6717,7 @@ int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const r
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -6899,7 +6731,7 @@ int hybrid_3rrrs_redundant_dissipation(const prepared *m, const real *X, const r
 int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real *V, real
     *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6911,7 +6743,7 @@ int hybrid_3rrrs_redundant_momentum(const prepared *m, const real *X, const real
 int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6926,7 +6758,7 @@ int hybrid_3rrrs_redundant_joint_margins(const prepared *m, const real *X, real 
 
 int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6940,7 +6772,7 @@ int hybrid_3rrrs_redundant_within_limits(const prepared *m, const real *X, real 
 
 int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6952,7 +6784,7 @@ int hybrid_3rrrs_redundant_actuator_positions(const prepared *m, const real *X, 
 int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real
     *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6964,7 +6796,7 @@ int hybrid_3rrrs_redundant_actuator_rates(const prepared *m, const real *X, cons
 int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V,
     const real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6976,7 +6808,7 @@ int hybrid_3rrrs_redundant_actuator_accelerations(const prepared *m, const real 
 int hybrid_3rrrs_redundant_power(const prepared *m, const real *X, const real *V, const real *tau,
     real *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -6999,7 +6831,7 @@ int hybrid_3rrrs_redundant_rotation(const real *X, real *R_out)
 
 int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
@@ -7028,7 +6860,7 @@ int hybrid_3rrrs_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
@@ -7042,8 +6874,8 @@ int hybrid_3rrrs_redundant_pose_from_rpy(const real *t, const real *rpy, real *X
 
 int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] = {0}, join_1[7] = {0}, X_moved[NQ] =
-        {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[1] CLEARED, join_1[7] = {0}, X_moved[NQ]
+        = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -7065,8 +6897,8 @@ int hybrid_3rrrs_redundant_retract(const real *X, const real *step, real *X_move
 
 int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[1] = {0}, join_1[6] = {0}, step[NV]
-        = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, subtract_2[1] CLEARED, join_1[6] = {0},
+        step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -7088,8 +6920,8 @@ int hybrid_3rrrs_redundant_difference(const real *X0, const real *X1, real *step
 
 int hybrid_3rrrs_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_2[7] = {0}, scale_1[7] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[1] =
-        {0}, join_3[7] = {0}, X[NQ] = {0};
+    real join_2[7] = {0}, scale_1[7] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[1]
+        CLEARED, join_3[7] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

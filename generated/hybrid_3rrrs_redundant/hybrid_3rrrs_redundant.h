@@ -204,7 +204,7 @@ typedef struct {
             rrrs_rho2_2_t[2], rrrs_size[2], rrrs_size_t_3[2], rrrs_w_3_in_axes3_y[2];
     hybrid_3rrrs_redundant_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star;
 } hybrid_3rrrs_redundant_model;
@@ -223,13 +223,13 @@ extern const char *const hybrid_3rrrs_redundant_ACTUATOR_NAMES[HYBRID_3RRRS_REDU
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
-/* Inertia matrix M. 758 mul, 579 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 732 mul, 575 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_redundant_M(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M);
 size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1055 mul, 787 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1024 mul, 779 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_redundant_Z(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -238,7 +238,7 @@ size_t hybrid_3rrrs_redundant_Z_batch(const hybrid_3rrrs_redundant_model *model,
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 344 mul, 179 add, 12 div, 6 sqrt, 2 trig. In:
+/* Force transformation H: actuators to task space. 333 mul, 172 add, 12 div, 6 sqrt, 2 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hybrid_3rrrs_redundant_H(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *H);
@@ -252,7 +252,7 @@ int hybrid_3rrrs_redundant_inverse_kinematics(const hybrid_3rrrs_redundant_model
 size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of all joints. 363 mul, 210 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 349 mul, 204 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_redundant_joint_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -261,7 +261,7 @@ size_t hybrid_3rrrs_redundant_joint_rates_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of all joints. 601 mul, 368 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 573 mul, 360 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_redundant_joint_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -270,7 +270,7 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
     hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1525 mul, 1189 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1485 mul, 1183 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_redundant_dynamics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -281,7 +281,7 @@ size_t hybrid_3rrrs_redundant_dynamics_batch(const hybrid_3rrrs_redundant_model 
     hybrid_3rrrs_redundant_real *M, hybrid_3rrrs_redundant_real *Z, hybrid_3rrrs_redundant_real
     *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1139 mul, 852 add, 12 div, 6 sqrt, 2
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1102 mul, 838 add, 12 div, 6 sqrt, 2
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hybrid_3rrrs_redundant_inverse_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -293,7 +293,7 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1525 mul, 1189 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1485 mul, 1183 add, 12 div, 6
    sqrt, 2 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_redundant_forward_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -318,7 +318,7 @@ size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_red
     hybrid_3rrrs_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 986 mul, 718 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 958 mul, 710 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_redundant_leg_reactions(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -341,7 +341,7 @@ size_t hybrid_3rrrs_redundant_energy_batch(const hybrid_3rrrs_redundant_model *m
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 367 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out:
+   legs. 356 mul, 200 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out:
    sigma (7), legs (3). */
 int hybrid_3rrrs_redundant_condition(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
@@ -351,7 +351,7 @@ size_t hybrid_3rrrs_redundant_condition_batch(const hybrid_3rrrs_redundant_model
     hybrid_3rrrs_redundant_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 367 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular
+   the least over the largest of them. 356 mul, 200 add, 12 div, 13 sqrt, 2 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int hybrid_3rrrs_redundant_manipulability(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *measure,
@@ -360,8 +360,8 @@ size_t hybrid_3rrrs_redundant_manipulability_batch(const hybrid_3rrrs_redundant_
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *measure,
     hybrid_3rrrs_redundant_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 367
-   mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 356
+   mul, 200 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int hybrid_3rrrs_redundant_singularity_distance(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *actuators,
@@ -389,7 +389,7 @@ size_t hybrid_3rrrs_redundant_dissipation_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *dissipation, int *status);
 
-/* Generalised momentum M V. 758 mul, 579 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 732 mul, 575 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_redundant_momentum(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -421,7 +421,7 @@ int hybrid_3rrrs_redundant_actuator_positions(const hybrid_3rrrs_redundant_model
 size_t hybrid_3rrrs_redundant_actuator_positions_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 363 mul, 210 add, 12 div, 6 sqrt, 2 trig.
+/* Rates of the actuated joints, in the order of tau. 349 mul, 204 add, 12 div, 6 sqrt, 2 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_redundant_actuator_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -430,7 +430,7 @@ size_t hybrid_3rrrs_redundant_actuator_rates_batch(const hybrid_3rrrs_redundant_
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 601 mul, 368 add, 12 div, 6 sqrt, 2
+/* Accelerations of the actuated joints, in the order of tau. 573 mul, 360 add, 12 div, 6 sqrt, 2
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_redundant_actuator_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const

@@ -1191,6 +1191,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -1210,9 +1211,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -1267,8 +1268,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -1311,9 +1312,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rrrrs,
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
@@ -2584,7 +2585,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1525 mul, 1189 add, 12 div, 6 sqrt, 2 trig
+# dynamics: 1485 mul, 1183 add, 12 div, 6 sqrt, 2 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2592,8 +2593,8 @@ def _run_dynamics(m, X, V):
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2660,13 +2661,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2682,12 +2682,12 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
-        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz,
-        M_aa_rrrrs_yy, M_aa_t, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x,
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_t,
+        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy,
+        M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x,
         Z_a_rrrrs_y, Z_a_rrrrs_z,
-    ) = [0.0] * 27
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -2748,26 +2748,25 @@ def _run_dynamics(m, X, V):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -2776,13 +2775,13 @@ def _run_dynamics(m, X, V):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -2792,24 +2791,25 @@ def _run_dynamics(m, X, V):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -2823,8 +2823,8 @@ def _run_dynamics(m, X, V):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -2890,10 +2890,10 @@ def _run_dynamics(m, X, V):
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
         rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
         rrrrs_omega_1_t = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
         )
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -2939,12 +2939,12 @@ def _run_dynamics(m, X, V):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -2959,19 +2959,13 @@ def _run_dynamics(m, X, V):
         rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
-        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
-        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
-        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_1_in_axes4_xy*rrrrs_r_3_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
             rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
             rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
@@ -2980,14 +2974,14 @@ def _run_dynamics(m, X, V):
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
             rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
             - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+            rrrrs_r_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_z = (
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_beta_3_in_axes4_y) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz -
+            rrrrs_beta_4_in_axes4_y) + rrrrs_r_3_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
@@ -3010,12 +3004,12 @@ def _run_dynamics(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26 +
-            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 +
+            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_o_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
         rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
@@ -3050,20 +3044,20 @@ def _run_dynamics(m, X, V):
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
         rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
         # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
@@ -3135,14 +3129,14 @@ def _run_dynamics(m, X, V):
             rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
         )
         rrrrs_Jc_3_in_axes2_xz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_27
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_25 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
         )
         rrrrs_Jc_3_in_axes2_yz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_27 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_25
         )
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
         rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
         )
         # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         rrrrs_L_c_3_2_in_axes2_z = (
@@ -3152,24 +3146,24 @@ def _run_dynamics(m, X, V):
         rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
         )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
-        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
-        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
-        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_25
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26
         rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
         rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
         rrrrs_Jc_2_in_axes2_xy = (
-        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_25 +
             rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_Jc_2_in_axes1_zz = (
         rrrrs_h_3_t_6*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27) -
+            rrrrs_Jc_2_t_3*rrrrs_h_3_t_25 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_26) -
             rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7) -
             rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 -
-            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2
-            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
-            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)))
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_25*(rrrrs_Jc_2_t_2
+            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_25) + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_4 +
+            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26)))
         )
         # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
@@ -3296,17 +3290,17 @@ def _run_dynamics(m, X, V):
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
-        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 -
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_27
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_25 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26
         )
         rrrrs_N_2_o_in_axes2_y = (
-        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_o_in_axes2_z = (
         rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_26)
+            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_25)
         )
         # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_d_Gamma_2_in_axes4_x = (
@@ -3367,6 +3361,11 @@ def _run_dynamics(m, X, V):
         rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
+        rrrrs_d_c_in_axes4_zz = (
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z -
+            rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z -
+            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z
+        )
         # (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_o_in_axes4_x = (
         rrrrs_c_t - rrrrs_G_o_in_axes4_x - rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
@@ -3384,11 +3383,7 @@ def _run_dynamics(m, X, V):
         # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
         rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
-        rrrrs_Q_t_3 = (
-        rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
-            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z -
-            rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z
-        )
+        rrrrs_Q_t_3 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_zz
         rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
         rrrrs_Q_t_5 = (
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
@@ -3413,6 +3408,12 @@ def _run_dynamics(m, X, V):
         )
         rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 + axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
         rrrrs_Q_xx = 2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
+        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_13 = (
+        rrrrs_Q_xx + rrrrs_Q_yy + rrrrs_d_c_in_axes4_xx + rrrrs_d_c_in_axes4_yy +
+            rrrrs_d_c_in_axes4_zz
+        )
         rrrrs_Q_xy = (
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_y*rrrrs_Q_t_5 +
             axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8
@@ -3421,14 +3422,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_5 +
             axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8
         )
-        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
-        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_yz = (
         axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_6 +
             axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9
         )
-        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
-        rrrrs_Q_zz = 2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
         # (rrrrs-U) velocity and gravity terms of the leg force
         rrrrs_U_x = (
         -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
@@ -3483,25 +3480,22 @@ def _run_dynamics(m, X, V):
         )
         rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t
         # (M_ta) coupling block of M
-        rrrrs_M_ta_t = rrrrs_Q_xy*rrrrs_q_z
-        rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t_2 - rrrrs_M_ta_t
-        rrrrs_M_ta_t_4 = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
-        rrrrs_M_ta_t_5 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
-        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
-        rrrrs_M_ta_t_7 = rrrrs_Q_yz*rrrrs_q_x
-        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
-        rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
-        rrrrs_M_ta_t_10 = rrrrs_Q_yz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_y
-        rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
+        rrrrs_M_ta_t = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
+        rrrrs_M_ta_t_2 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_3 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
+        rrrrs_M_ta_t_4 = rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_z - rrrrs_M_ta_t_4
+        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_t_13*rrrrs_q_y + rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_8 = rrrrs_Q_t_13*rrrrs_q_x + rrrrs_Q_xz*rrrrs_q_z
+        rrrrs_M_ta_t_9 = rrrrs_M_ta_t_4 - rrrrs_Q_xz*rrrrs_q_y
         # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_z - rrrrs_M_ta_t_10*rrrrs_q_y
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y - rrrrs_M_ta_t_8*rrrrs_q_z
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y - rrrrs_M_ta_t_9*rrrrs_q_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_z - rrrrs_M_ta_t_11*rrrrs_q_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t = rrrrs_M_ta_t_3*rrrrs_q_z - rrrrs_M_ta_t_7*rrrrs_q_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_y - rrrrs_M_ta_t_5*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t*rrrrs_q_z - rrrrs_M_ta_t_8*rrrrs_q_x
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z - rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_6*rrrrs_q_x - rrrrs_M_ta_t_2*rrrrs_q_y
         # (Z_a) rotational part of Z
         rrrrs_Z_a_t = rrrrs_U_z*rrrrs_q_y - rrrrs_U_y*rrrrs_q_z
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
@@ -3520,7 +3514,7 @@ def _run_dynamics(m, X, V):
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -3530,23 +3524,22 @@ def _run_dynamics(m, X, V):
         M_tt_rrrrs_xz += rrrrs_Q_xz
         M_tt_rrrrs_yy += rrrrs_Q_yy
         M_tt_rrrrs_yz += rrrrs_Q_yz
-        M_tt_rrrrs_zz += rrrrs_Q_zz
+        M_tt_t += rrrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_rrrrs_xx += rrrrs_M_ta_t_3
-        M_ta_rrrrs_xy += rrrrs_M_ta_t_4
-        M_ta_rrrrs_xz += -rrrrs_M_ta_t_5
-        M_ta_rrrrs_yx += -rrrrs_M_ta_t_6
-        M_ta_rrrrs_yy += rrrrs_M_ta_t_8
-        M_ta_rrrrs_yz += rrrrs_M_ta_t_9
-        M_ta_rrrrs_zx += -rrrrs_M_ta_t_10
-        M_ta_rrrrs_zy += rrrrs_M_ta_t_11
-        M_ta_rrrrs_zz += rrrrs_M_ta_t_12
+        M_ta_rrrrs_yy += rrrrs_M_ta_t_5
+        M_ta_rrrrs_zz += rrrrs_M_ta_t_9
+        M_ta_rrrrs_xy += rrrrs_M_ta_t
+        M_ta_rrrrs_xz += rrrrs_M_ta_t_2
+        M_ta_rrrrs_yx += -rrrrs_M_ta_t_3
+        M_ta_rrrrs_yz += rrrrs_M_ta_t_6
+        M_ta_rrrrs_zx += -rrrrs_M_ta_t_7
+        M_ta_rrrrs_zy += rrrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
         M_aa_rrrrs_xz += rrrrs_M_aa_t_3
         M_aa_rrrrs_yy += rrrrs_M_aa_t_4
-        M_aa_t += rrrrs_M_aa_t_5
+        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrrs_x += rrrrs_U_x
@@ -3595,12 +3588,11 @@ def _run_dynamics(m, X, V):
         # (rrrrs-w_3) reciprocal vector 2
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
     (
-    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
-        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
-        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
-        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz, Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x,
-        Z_a_rrrs_y, Z_a_rrrs_z,
-    ) = [0.0] * 27
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_t_2, M_ta_rrrs_yy,
+        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz, Z_t_rrrs_x,
+        Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
+    ) = [0.0] * 26
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -3679,48 +3671,24 @@ def _run_dynamics(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -3731,6 +3699,33 @@ def _run_dynamics(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -3743,33 +3738,34 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_5 - omega_z*rrrs_S_dot_t_4
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t_3 - omega_x*rrrs_S_dot_t_5
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_4 - omega_y*rrrs_S_dot_t_3
         rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
@@ -3783,7 +3779,7 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -3797,29 +3793,26 @@ def _run_dynamics(m, X, V):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -3935,8 +3928,8 @@ def _run_dynamics(m, X, V):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -4030,6 +4023,11 @@ def _run_dynamics(m, X, V):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
+        rrrs_d_c_in_axes3_zz = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z -
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z
+        )
         # (rrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrrs_c_o_in_axes3_x = (
         rrrs_c_t + rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x -
@@ -4047,11 +4045,7 @@ def _run_dynamics(m, X, V):
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
-        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
@@ -4070,6 +4064,11 @@ def _run_dynamics(m, X, V):
         rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
         rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
         rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = (
+        rrrs_Q_xx + rrrs_Q_yy + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_yy + rrrs_d_c_in_axes3_zz
+        )
         rrrs_Q_xy = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
@@ -4078,14 +4077,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
         axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
             axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
         rrrs_U_x = (
         -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
@@ -4100,25 +4095,22 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
-        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
-        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
-        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
-        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
-        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
-        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
-        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        rrrs_M_ta_t = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_2 = rrrs_Q_xx*rrrs_q_y - rrrs_Q_xy*rrrs_q_x
+        rrrs_M_ta_t_3 = rrrs_Q_yy*rrrs_q_z - rrrs_Q_yz*rrrs_q_y
+        rrrs_M_ta_t_4 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_z - rrrs_M_ta_t_4
+        rrrs_M_ta_t_6 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_13*rrrs_q_y + rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_8 = rrrs_Q_t_13*rrrs_q_x + rrrs_Q_xz*rrrs_q_z
+        rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - rrrs_Q_xz*rrrs_q_y
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
+        rrrs_M_aa_t = rrrs_M_ta_t_3*rrrs_q_z - rrrs_M_ta_t_7*rrrs_q_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_y - rrrs_M_ta_t_5*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_9*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t*rrrs_q_z - rrrs_M_ta_t_8*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         # (Z_a) rotational part of Z
         rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
@@ -4143,23 +4135,22 @@ def _run_dynamics(m, X, V):
         M_tt_rrrs_xz += rrrs_Q_xz
         M_tt_rrrs_yy += rrrs_Q_yy
         M_tt_rrrs_yz += rrrs_Q_yz
-        M_tt_rrrs_zz += rrrs_Q_zz
+        M_tt_t_2 += rrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_rrrs_xx += rrrs_M_ta_t_3
-        M_ta_rrrs_xy += rrrs_M_ta_t_4
-        M_ta_rrrs_xz += rrrs_M_ta_t_5
-        M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_rrrs_yy += rrrs_M_ta_t_8
-        M_ta_rrrs_yz += rrrs_M_ta_t_9
-        M_ta_rrrs_zx += rrrs_M_ta_t_10
-        M_ta_rrrs_zy += rrrs_M_ta_t_11
-        M_ta_rrrs_zz += rrrs_M_ta_t_12
+        M_ta_rrrs_yy += rrrs_M_ta_t_5
+        M_ta_rrrs_zz += rrrs_M_ta_t_9
+        M_ta_rrrs_xy += rrrs_M_ta_t
+        M_ta_t += rrrs_M_ta_t_2
+        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_rrrs_yz += rrrs_M_ta_t_6
+        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_t += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrs_x += rrrs_U_x
@@ -4191,15 +4182,15 @@ def _run_dynamics(m, X, V):
     M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz
     M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star
     M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz
-    M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star
+    M_tt_zz = m_star - M_tt_t - M_tt_t_2
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx
+    M_ta_xx = -M_ta_rrrrs_yy - M_ta_rrrrs_zz - M_ta_rrrs_yy - M_ta_rrrs_zz
     M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y
-    M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z
+    M_ta_xz = M_ta_rrrrs_xz - M_ta_t - h_star_y
+    M_ta_yx = M_ta_rrrrs_yx - M_ta_t_2 - h_star_z
     M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
     M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y
+    M_ta_zx = M_ta_rrrrs_zx + h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
     M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
@@ -4207,7 +4198,7 @@ def _run_dynamics(m, X, V):
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrs_yz - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_rrrrs_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
@@ -4267,7 +4258,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 758 mul, 579 add, 12 div, 6 sqrt, 2 trig
+# M: 732 mul, 575 add, 12 div, 6 sqrt, 2 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -4275,7 +4266,7 @@ def _run_M(m, X):
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -4328,19 +4319,18 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
-        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz,
-        M_aa_rrrrs_yy, M_aa_t, M_aa_rrrrs_zz,
-    ) = [0.0] * 21
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_t,
+        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy,
+        M_aa_rrrrs_yz, M_aa_rrrrs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
@@ -4393,26 +4383,25 @@ def _run_M(m, X):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -4421,33 +4410,34 @@ def _run_M(m, X):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -4458,8 +4448,8 @@ def _run_M(m, X):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -4517,14 +4507,14 @@ def _run_M(m, X):
             rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
         )
         rrrrs_Jc_3_in_axes2_xz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_27
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_25 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
         )
         rrrrs_Jc_3_in_axes2_yz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_27 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_25
         )
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
         rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
         )
         # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         rrrrs_L_c_3_2_in_axes2_z = (
@@ -4534,24 +4524,24 @@ def _run_M(m, X):
         rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
         )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
-        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
-        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
-        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_25
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26
         rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
         rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
         rrrrs_Jc_2_in_axes2_xy = (
-        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_25 +
             rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_Jc_2_in_axes1_zz = (
         rrrrs_h_3_t_6*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27) -
+            rrrrs_Jc_2_t_3*rrrrs_h_3_t_25 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_26) -
             rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7) -
             rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 -
-            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2
-            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
-            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27)))
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_25*(rrrrs_Jc_2_t_2
+            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_25) + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_4 +
+            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26)))
         )
         # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
@@ -4614,14 +4604,15 @@ def _run_M(m, X):
         rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
+        rrrrs_d_c_in_axes4_zz = (
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z -
+            rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z -
+            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z
+        )
         # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
         rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
-        rrrrs_Q_t_3 = (
-        rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
-            rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y*rrrrs_w_1_in_axes4_z -
-            rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x*rrrrs_w_1_in_axes4_z
-        )
+        rrrrs_Q_t_3 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_zz
         rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
         rrrrs_Q_t_5 = (
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_2 + axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
@@ -4646,6 +4637,12 @@ def _run_M(m, X):
         )
         rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 + axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
         rrrrs_Q_xx = 2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
+        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_t_13 = (
+        rrrrs_Q_xx + rrrrs_Q_yy + rrrrs_d_c_in_axes4_xx + rrrrs_d_c_in_axes4_yy +
+            rrrrs_d_c_in_axes4_zz
+        )
         rrrrs_Q_xy = (
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_y*rrrrs_Q_t_5 +
             axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8
@@ -4654,14 +4651,10 @@ def _run_M(m, X):
         axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_5 +
             axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8
         )
-        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
-        rrrrs_Q_yy = 2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
         rrrrs_Q_yz = (
         axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_z*rrrrs_Q_t_6 +
             axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9
         )
-        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
-        rrrrs_Q_zz = 2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_d_P_2_in_axes4_x = (
         rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
@@ -4698,32 +4691,29 @@ def _run_M(m, X):
         )
         rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
         # (M_ta) coupling block of M
-        rrrrs_M_ta_t = rrrrs_Q_xy*rrrrs_q_z
-        rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t_2 - rrrrs_M_ta_t
-        rrrrs_M_ta_t_4 = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
-        rrrrs_M_ta_t_5 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
-        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
-        rrrrs_M_ta_t_7 = rrrrs_Q_yz*rrrrs_q_x
-        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
-        rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
-        rrrrs_M_ta_t_10 = rrrrs_Q_yz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_y
-        rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
+        rrrrs_M_ta_t = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
+        rrrrs_M_ta_t_2 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_3 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
+        rrrrs_M_ta_t_4 = rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_z - rrrrs_M_ta_t_4
+        rrrrs_M_ta_t_6 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
+        rrrrs_M_ta_t_7 = rrrrs_Q_t_13*rrrrs_q_y + rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_8 = rrrrs_Q_t_13*rrrrs_q_x + rrrrs_Q_xz*rrrrs_q_z
+        rrrrs_M_ta_t_9 = rrrrs_M_ta_t_4 - rrrrs_Q_xz*rrrrs_q_y
         # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_z - rrrrs_M_ta_t_10*rrrrs_q_y
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y - rrrrs_M_ta_t_8*rrrrs_q_z
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y - rrrrs_M_ta_t_9*rrrrs_q_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_z - rrrrs_M_ta_t_11*rrrrs_q_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t = rrrrs_M_ta_t_3*rrrrs_q_z - rrrrs_M_ta_t_7*rrrrs_q_y
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_y - rrrrs_M_ta_t_5*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t*rrrrs_q_z - rrrrs_M_ta_t_8*rrrrs_q_x
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z - rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_6*rrrrs_q_x - rrrrs_M_ta_t_2*rrrrs_q_y
         # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
         rrrrs_M_ya_2_x = rrrrs_d_P_2_z*rrrrs_q_y - rrrrs_d_P_2_y*rrrrs_q_z
         rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
         rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -4733,23 +4723,22 @@ def _run_M(m, X):
         M_tt_rrrrs_xz += rrrrs_Q_xz
         M_tt_rrrrs_yy += rrrrs_Q_yy
         M_tt_rrrrs_yz += rrrrs_Q_yz
-        M_tt_rrrrs_zz += rrrrs_Q_zz
+        M_tt_t += rrrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_rrrrs_xx += rrrrs_M_ta_t_3
-        M_ta_rrrrs_xy += rrrrs_M_ta_t_4
-        M_ta_rrrrs_xz += -rrrrs_M_ta_t_5
-        M_ta_rrrrs_yx += -rrrrs_M_ta_t_6
-        M_ta_rrrrs_yy += rrrrs_M_ta_t_8
-        M_ta_rrrrs_yz += rrrrs_M_ta_t_9
-        M_ta_rrrrs_zx += -rrrrs_M_ta_t_10
-        M_ta_rrrrs_zy += rrrrs_M_ta_t_11
-        M_ta_rrrrs_zz += rrrrs_M_ta_t_12
+        M_ta_rrrrs_yy += rrrrs_M_ta_t_5
+        M_ta_rrrrs_zz += rrrrs_M_ta_t_9
+        M_ta_rrrrs_xy += rrrrs_M_ta_t
+        M_ta_rrrrs_xz += rrrrs_M_ta_t_2
+        M_ta_rrrrs_yx += -rrrrs_M_ta_t_3
+        M_ta_rrrrs_yz += rrrrs_M_ta_t_6
+        M_ta_rrrrs_zx += -rrrrs_M_ta_t_7
+        M_ta_rrrrs_zy += rrrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
         M_aa_rrrrs_xz += rrrrs_M_aa_t_3
         M_aa_rrrrs_yy += rrrrs_M_aa_t_4
-        M_aa_t += rrrrs_M_aa_t_5
+        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
@@ -4768,11 +4757,10 @@ def _run_M(m, X):
         # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
     (
-    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
-        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
-        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
-        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
-    ) = [0.0] * 21
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_t_2, M_ta_rrrs_yy,
+        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
@@ -4846,39 +4834,25 @@ def _run_M(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -4889,6 +4863,20 @@ def _run_M(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
         rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
@@ -4947,14 +4935,15 @@ def _run_M(m, X):
         rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
             rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
+        rrrs_d_c_in_axes3_zz = (
+        rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z -
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z -
+            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z
+        )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
         rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y*rrrs_w_1_in_axes3_z -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x*rrrs_w_1_in_axes3_z
-        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_2 + axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
@@ -4973,6 +4962,11 @@ def _run_M(m, X):
         rrrs_Q_t_10 = axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx + axis_z_rrrs_axes3_z*rrrs_Q_t_4
         rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 + axis_z_rrrs_axes3_x*rrrs_Q_t_8
         rrrs_Q_xx = 2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_t_13 = (
+        rrrs_Q_xx + rrrs_Q_yy + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_yy + rrrs_d_c_in_axes3_zz
+        )
         rrrs_Q_xy = (
         axis_y_rrrs_axes3_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8
@@ -4981,34 +4975,27 @@ def _run_M(m, X):
         axis_y_rrrs_axes3_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
             axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 + axis_z_rrrs_axes3_y*rrrs_Q_t_9
-        rrrs_Q_yy = 2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
         rrrs_Q_yz = (
         axis_y_rrrs_axes3_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
             axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9
         )
-        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 + axis_z_rrrs_axes3_z*rrrs_Q_t_10
-        rrrs_Q_zz = 2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
-        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
-        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
-        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
-        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
-        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
-        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
-        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        rrrs_M_ta_t = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_2 = rrrs_Q_xx*rrrs_q_y - rrrs_Q_xy*rrrs_q_x
+        rrrs_M_ta_t_3 = rrrs_Q_yy*rrrs_q_z - rrrs_Q_yz*rrrs_q_y
+        rrrs_M_ta_t_4 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_z - rrrs_M_ta_t_4
+        rrrs_M_ta_t_6 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_7 = rrrs_Q_t_13*rrrs_q_y + rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_8 = rrrs_Q_t_13*rrrs_q_x + rrrs_Q_xz*rrrs_q_z
+        rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - rrrs_Q_xz*rrrs_q_y
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
+        rrrs_M_aa_t = rrrs_M_ta_t_3*rrrs_q_z - rrrs_M_ta_t_7*rrrs_q_y
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_y - rrrs_M_ta_t_5*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_9*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t*rrrs_q_z - rrrs_M_ta_t_8*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         ok = (
         ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
             _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
@@ -5021,23 +5008,22 @@ def _run_M(m, X):
         M_tt_rrrs_xz += rrrs_Q_xz
         M_tt_rrrs_yy += rrrs_Q_yy
         M_tt_rrrs_yz += rrrs_Q_yz
-        M_tt_rrrs_zz += rrrs_Q_zz
+        M_tt_t_2 += rrrs_Q_t_13
         # (M_ta) coupling block of M
-        M_ta_rrrs_xx += rrrs_M_ta_t_3
-        M_ta_rrrs_xy += rrrs_M_ta_t_4
-        M_ta_rrrs_xz += rrrs_M_ta_t_5
-        M_ta_rrrs_yx += rrrs_M_ta_t_6
-        M_ta_rrrs_yy += rrrs_M_ta_t_8
-        M_ta_rrrs_yz += rrrs_M_ta_t_9
-        M_ta_rrrs_zx += rrrs_M_ta_t_10
-        M_ta_rrrs_zy += rrrs_M_ta_t_11
-        M_ta_rrrs_zz += rrrs_M_ta_t_12
+        M_ta_rrrs_yy += rrrs_M_ta_t_5
+        M_ta_rrrs_zz += rrrs_M_ta_t_9
+        M_ta_rrrs_xy += rrrs_M_ta_t
+        M_ta_t += rrrs_M_ta_t_2
+        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_rrrs_yz += rrrs_M_ta_t_6
+        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_rrrs_yz += rrrs_M_aa_t_5
+        M_aa_t += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
@@ -5045,15 +5031,15 @@ def _run_M(m, X):
     M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz
     M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star
     M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz
-    M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star
+    M_tt_zz = m_star - M_tt_t - M_tt_t_2
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx
+    M_ta_xx = -M_ta_rrrrs_yy - M_ta_rrrrs_zz - M_ta_rrrs_yy - M_ta_rrrs_zz
     M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y
-    M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z
+    M_ta_xz = M_ta_rrrrs_xz - M_ta_t - h_star_y
+    M_ta_yx = M_ta_rrrrs_yx - M_ta_t_2 - h_star_z
     M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
     M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y
+    M_ta_zx = M_ta_rrrrs_zx + h_star_y - M_ta_t_3
     M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
     M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
@@ -5061,7 +5047,7 @@ def _run_M(m, X):
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrs_yz - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_rrrrs_yz - M_aa_t
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -5105,7 +5091,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1055 mul, 787 add, 12 div, 6 sqrt, 2 trig
+# Z: 1024 mul, 779 add, 12 div, 6 sqrt, 2 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -5113,8 +5099,8 @@ def _run_Z(m, X, V):
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -5179,13 +5165,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -5256,23 +5241,22 @@ def _run_Z(m, X, V):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -5281,13 +5265,13 @@ def _run_Z(m, X, V):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -5297,24 +5281,25 @@ def _run_Z(m, X, V):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -5325,8 +5310,8 @@ def _run_Z(m, X, V):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -5386,10 +5371,10 @@ def _run_Z(m, X, V):
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
         rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
         rrrrs_omega_1_t = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
         )
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -5435,12 +5420,12 @@ def _run_Z(m, X, V):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -5455,19 +5440,13 @@ def _run_Z(m, X, V):
         rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
-        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
-        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
-        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_1_in_axes4_xy*rrrrs_r_3_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
             rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
             rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
@@ -5476,14 +5455,14 @@ def _run_Z(m, X, V):
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
             rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
             - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+            rrrrs_r_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_z = (
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_beta_3_in_axes4_y) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz -
+            rrrrs_beta_4_in_axes4_y) + rrrrs_r_3_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
@@ -5506,12 +5485,12 @@ def _run_Z(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26 +
-            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 +
+            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_o_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
         rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
@@ -5546,20 +5525,20 @@ def _run_Z(m, X, V):
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
         rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
         # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
@@ -5706,17 +5685,17 @@ def _run_Z(m, X, V):
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
-        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 -
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_27
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_25 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26
         )
         rrrrs_N_2_o_in_axes2_y = (
-        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_o_in_axes2_z = (
         rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_26)
+            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_25)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -5776,7 +5755,7 @@ def _run_Z(m, X, V):
         rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -5866,45 +5845,24 @@ def _run_Z(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -5915,6 +5873,30 @@ def _run_Z(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -5922,33 +5904,34 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
         rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
-        rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
-        rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        rrrs_u_1_x = omega_y*rrrs_S_dot_t_5 - omega_z*rrrs_S_dot_t_4
+        rrrs_u_1_y = omega_z*rrrs_S_dot_t_3 - omega_x*rrrs_S_dot_t_5
+        rrrs_u_1_z = omega_x*rrrs_S_dot_t_4 - omega_y*rrrs_S_dot_t_3
         rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
@@ -5962,7 +5945,7 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -5976,29 +5959,26 @@ def _run_Z(m, X, V):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
@@ -6090,8 +6070,8 @@ def _run_Z(m, X, V):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -6218,7 +6198,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 344 mul, 179 add, 12 div, 6 sqrt, 2 trig
+# H: 333 mul, 172 add, 12 div, 6 sqrt, 2 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -6303,23 +6283,22 @@ def _run_H(m, X):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -6328,31 +6307,30 @@ def _run_H(m, X):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -6366,8 +6344,8 @@ def _run_H(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -6408,7 +6386,7 @@ def _run_H(m, X):
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -6499,41 +6477,25 @@ def _run_H(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -6544,6 +6506,21 @@ def _run_H(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -6581,7 +6558,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1139 mul, 852 add, 12 div, 6 sqrt, 2 trig
+# required: 1102 mul, 838 add, 12 div, 6 sqrt, 2 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -6681,9 +6658,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -6707,27 +6681,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_rrrrs_x, R_a_rrrrs_y, R_a_rrrrs_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -6785,23 +6756,22 @@ def _run_required(m, X, V, A):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -6810,13 +6780,13 @@ def _run_required(m, X, V, A):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -6826,24 +6796,25 @@ def _run_required(m, X, V, A):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -6857,8 +6828,8 @@ def _run_required(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -6922,10 +6893,10 @@ def _run_required(m, X, V, A):
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
         rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
         rrrrs_omega_1_t = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
         )
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -6979,12 +6950,12 @@ def _run_required(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -6999,19 +6970,13 @@ def _run_required(m, X, V, A):
         rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
-        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
-        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
-        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_1_in_axes4_xy*rrrrs_r_3_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
             rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
             rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
@@ -7020,14 +6985,14 @@ def _run_required(m, X, V, A):
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
             rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
             - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+            rrrrs_r_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_z = (
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_beta_3_in_axes4_y) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz -
+            rrrrs_beta_4_in_axes4_y) + rrrrs_r_3_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
@@ -7060,12 +7025,12 @@ def _run_required(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -7096,19 +7061,19 @@ def _run_required(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
         rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
@@ -7245,17 +7210,17 @@ def _run_required(m, X, V, A):
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 -
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_27
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_25 -
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_in_axes2_z = (
         rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_f_3_in_axes3_y*rrrrs_h_3_t_26)
+            rrrrs_joint3_offset_x*(rrrrs_f_3_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_f_3_in_axes3_y*rrrrs_h_3_t_25)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -7319,7 +7284,7 @@ def _run_required(m, X, V, A):
         rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -7429,48 +7394,24 @@ def _run_required(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -7481,6 +7422,33 @@ def _run_required(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -7491,25 +7459,26 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -7531,7 +7500,7 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -7545,29 +7514,26 @@ def _run_required(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -7653,8 +7619,8 @@ def _run_required(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -7884,23 +7850,22 @@ def _run_inverse_kinematics(m, X):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -7910,22 +7875,22 @@ def _run_inverse_kinematics(m, X):
         # (rrrrs-q_1) displacement of joint 1
         rrrrs_q_1 = atan2(rrrrs_s_1, rrrrs_c_1)
         # (rrrrs-q_3) displacement of joint 3
-        rrrrs_q_3 = atan2(rrrrs_h_3_t_27, rrrrs_h_3_t_26)
+        rrrrs_q_3 = atan2(rrrrs_h_3_t_26, rrrrs_h_3_t_25)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-q_4) displacement of joint 4
         rrrrs_q_4 = atan2(-rrrrs_s_4_t, rrrrs_c_4)
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0)
         )
         # (rrrrs-q_1) displacement of joint 1
@@ -8022,7 +7987,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 363 mul, 210 add, 12 div, 6 sqrt, 2 trig
+# joint_rates: 349 mul, 204 add, 12 div, 6 sqrt, 2 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -8122,23 +8087,22 @@ def _run_joint_rates(m, X, V):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -8147,13 +8111,13 @@ def _run_joint_rates(m, X, V):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -8163,24 +8127,25 @@ def _run_joint_rates(m, X, V):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -8191,8 +8156,8 @@ def _run_joint_rates(m, X, V):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -8250,7 +8215,7 @@ def _run_joint_rates(m, X, V):
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -8330,45 +8295,24 @@ def _run_joint_rates(m, X, V):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -8379,6 +8323,30 @@ def _run_joint_rates(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -8386,14 +8354,11 @@ def _run_joint_rates(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         ok = (
         ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
@@ -8404,13 +8369,13 @@ def _run_joint_rates(m, X, V):
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
         # (rrrs-qd_2) rate of joint 2
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t
+        out_qd[_qd_rrrs[1][leg]] = rrrs_qd_2
         # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 601 mul, 368 add, 12 div, 6 sqrt, 2 trig
+# joint_accelerations: 573 mul, 360 add, 12 div, 6 sqrt, 2 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -8541,23 +8506,22 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -8566,13 +8530,13 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -8582,24 +8546,25 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -8610,8 +8575,8 @@ def _run_joint_accelerations(m, X, V, A):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -8671,10 +8636,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
         rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
         rrrrs_omega_1_t = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
         )
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -8722,12 +8687,12 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -8741,19 +8706,13 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
-        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
-        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
-        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_1_in_axes4_xy*rrrrs_r_3_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
             rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
             rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
@@ -8762,14 +8721,14 @@ def _run_joint_accelerations(m, X, V, A):
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
             rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
             - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+            rrrrs_r_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_z = (
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_beta_3_in_axes4_y) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz -
+            rrrrs_beta_4_in_axes4_y) + rrrrs_r_3_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
@@ -8791,7 +8750,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -8871,45 +8830,24 @@ def _run_joint_accelerations(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -8920,6 +8858,30 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
         rrrs_qd_1 = (
@@ -8927,24 +8889,25 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = t_ddot_x + B_p_xy*rrrs_q_y + B_p_xz*rrrs_q_z - W_p_t_4*rrrs_q_x
         rrrs_S_ddot_y = t_ddot_y + B_p_yx*rrrs_q_x + B_p_yz*rrrs_q_z - W_p_t_5*rrrs_q_y
@@ -8962,7 +8925,7 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
@@ -8975,29 +8938,26 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -9025,7 +8985,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 986 mul, 718 add, 12 div, 6 sqrt, 2 trig
+# legs: 958 mul, 710 add, 12 div, 6 sqrt, 2 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -9169,23 +9129,22 @@ def _run_legs(m, X, V, A):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -9194,13 +9153,13 @@ def _run_legs(m, X, V, A):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -9210,24 +9169,25 @@ def _run_legs(m, X, V, A):
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -9241,8 +9201,8 @@ def _run_legs(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -9305,10 +9265,10 @@ def _run_legs(m, X, V, A):
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
         rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
         rrrrs_omega_1_t = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
         )
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -9362,12 +9322,12 @@ def _run_legs(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -9382,19 +9342,13 @@ def _run_legs(m, X, V, A):
         rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
-        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
-        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
-        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
-        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
-        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_bias_in_axes4_x = (
         rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
-            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_1_in_axes4_xy*rrrrs_r_3_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
             rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
             rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
         )
@@ -9403,14 +9357,14 @@ def _run_legs(m, X, V, A):
             rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
             rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
             - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
-            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+            rrrrs_r_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
         )
         rrrrs_bias_in_axes4_z = (
         rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
-            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_beta_3_in_axes4_y) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz -
+            rrrrs_beta_4_in_axes4_y) + rrrrs_r_3_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
             rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
             rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
             2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
             2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
@@ -9443,12 +9397,12 @@ def _run_legs(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -9479,19 +9433,19 @@ def _run_legs(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
         rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_27 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
@@ -9608,12 +9562,12 @@ def _run_legs(m, X, V, A):
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 -
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_27
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_25 -
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_27 +
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 +
+            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -9667,7 +9621,7 @@ def _run_legs(m, X, V, A):
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
             (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
         )
@@ -9758,48 +9712,24 @@ def _run_legs(m, X, V, A):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
-        rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
-        rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
-        rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -9810,6 +9740,33 @@ def _run_legs(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        rrrs_S_dot_t_3 = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_4 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_5 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        rrrs_S_dot_x = rrrs_S_dot_t_3 + t_dot_x
+        rrrs_S_dot_y = rrrs_S_dot_t_4 + t_dot_y
+        rrrs_S_dot_z = rrrs_S_dot_t_5 + t_dot_z
+        rrrs_S_dot_in_axes3_x = (
+        axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_x_rrrs_axes3_z*rrrs_S_dot_z
+        )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
@@ -9820,25 +9777,26 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = (
-        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
-            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
-        )
+        rrrs_qd_2 = rrrs_S_dot_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
         rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_t = rrrs_h_2_t_20*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
-        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
+        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
-        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -9860,7 +9818,7 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes2_y = -rrrs_omega_1_in_axes2_x*rrrs_qd_2
         rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_in_axes3_x = rrrs_omega_1_in_axes3_y*rrrs_qd_3
@@ -9874,29 +9832,26 @@ def _run_legs(m, X, V, A):
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
-        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
-        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
-        rrrs_bias_t_6 = (
-        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_5 = (
+        rrrs_omega_1_in_axes3_x*rrrs_r_2_in_axes3_y - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
-        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_t_6 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_7 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_4*rrrs_qd_2 - rrrs_bias_t_6*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_7*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_S_dot_in_axes3_x*rrrs_qd_2 + rrrs_bias_t_7*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
-            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_x + rrrs_bias_t_6*rrrs_omega_1_in_axes3_x +
+            rrrs_r_2_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3 -
+            rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) - rrrs_S_dot_in_axes3_x*rrrs_omega_1_in_axes3_y -
             rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
@@ -9982,8 +9937,8 @@ def _run_legs(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
         rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
@@ -10197,26 +10152,25 @@ def _run_potential(m, X):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -10225,20 +10179,20 @@ def _run_potential(m, X):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
         rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
         )
         # (potential) potential energy
         rrrrs_b_in_spec1_y = rrrrs_c_1*rrrrs_potential_t + rrrrs_potential_t_2*rrrrs_s_1
@@ -10246,10 +10200,10 @@ def _run_potential(m, X):
         rrrrs_potential_t_5 = rrrrs_c_4*rrrrs_h_4_in_spec4_x + rrrrs_h_4_in_spec4_y*rrrrs_s_4_t
         rrrrs_potential_t_6 = rrrrs_c_4*rrrrs_h_4_in_spec4_y - rrrrs_h_4_in_spec4_x*rrrrs_s_4_t
         rrrrs_potential_t_7 = (
-        rrrrs_h_3_t_26*rrrrs_potential_t_5 - rrrrs_h_3_t_27*rrrrs_potential_t_6
+        rrrrs_h_3_t_25*rrrrs_potential_t_5 - rrrrs_h_3_t_26*rrrrs_potential_t_6
         )
         rrrrs_potential_t_8 = (
-        rrrrs_h_3_t_26*rrrrs_potential_t_6 + rrrrs_h_3_t_27*rrrrs_potential_t_5
+        rrrrs_h_3_t_25*rrrrs_potential_t_6 + rrrrs_h_3_t_26*rrrrs_potential_t_5
         )
         rrrrs_potential_t_9 = (
         rrrrs_h_1_in_spec1_x + rrrrs_potential_t_3 + rrrrs_potential_t_4 +
@@ -10275,7 +10229,7 @@ def _run_potential(m, X):
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
             0.0)
         )
         # (potential) potential energy
@@ -10386,7 +10340,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 367 mul, 207 add, 12 div, 13 sqrt, 2 trig
+# condition: 356 mul, 200 add, 12 div, 13 sqrt, 2 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -10482,23 +10436,22 @@ def _run_condition(m, X):
         rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
         rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
         rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
-        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
-        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
-        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
-        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
+        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
+        rrrrs_h_3_t_25 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
         )
-        rrrrs_h_3_t_27 = (
-        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
         )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
@@ -10507,31 +10460,30 @@ def _run_condition(m, X):
         rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
-        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
-        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
+        rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_26*rrrrs_h_3_t_7 - rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
+        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
         rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -10545,8 +10497,8 @@ def _run_condition(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
         rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
         rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
@@ -10579,7 +10531,7 @@ def _run_condition(m, X):
         rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_pivot_size = abs(rrrrs_h_3_t_11)
-        rrrrs_pivot_size_2 = abs(rrrrs_h_3_t_23)
+        rrrrs_pivot_size_2 = abs(rrrrs_h_3_t_22)
         rrrrs_pivot_size_3 = abs(rrrrs_v_1_in_axes4_z)
         rrrrs_pivot_size_4 = abs(rrrrs_r_3_in_axes4_y)
         rrrrs_least_pivots = (
@@ -10605,11 +10557,11 @@ def _run_condition(m, X):
         )
         clear = (
         clear & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
+            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
             (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
             _TOLERANCE * rrrrs_size)
         )
-        reached = reached & (rrrrs_h_3_t_24 >= 0.0)
+        reached = reached & (rrrrs_h_3_t_23 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrrs += rrrrs_spread_t_4
         # (rrrrs-w_1) reciprocal vector 1
@@ -10634,7 +10586,7 @@ def _run_condition(m, X):
         out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
-        out_reach[_reach_rrrrs[0][leg]] = rrrrs_h_3_t_24
+        out_reach[_reach_rrrrs[0][leg]] = rrrrs_h_3_t_23
     spread_rrrs, = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -10703,41 +10655,25 @@ def _run_condition(m, X):
         rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
-        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        # (rrrs-S_dot) velocity of the connection point
         rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
         rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
-        rrrs_v_1_in_axes3_z = (
-        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
-            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
-        )
-        # (rrrs-w_1) reciprocal vector 1
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
-        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
-        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
-        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
-        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
-        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_S_dot_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_S_dot_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
-            rrrs_base_frame_xz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_xy + rrrs_S_dot_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
-            rrrs_base_frame_yz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_yy + rrrs_S_dot_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
-            rrrs_base_frame_zz*rrrs_w_2_t_2
+        rrrs_S_dot_t*rrrs_base_frame_zy + rrrs_S_dot_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -10748,6 +10684,21 @@ def _run_condition(m, X):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
+        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x

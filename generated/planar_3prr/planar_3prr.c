@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1205,7 +1216,7 @@ typedef struct {
         prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
         prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
         prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
-        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_yy, prr_Q_xy, prr_M_ta_t,
         prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
         prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
@@ -1346,8 +1357,8 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     const real prr_Q_t_4 = v->axis_y_prr_axes2_x*prr_d_c_in_axes2_xy +
         v->axis_x_prr_axes2_x*prr_Q_t_2;
     v->prr_Q_xx = 2*v->axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
-    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
     v->prr_Q_yy = 2*v->axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
     /* (M_ta) coupling block of M */
     v->prr_M_ta_t = v->prr_Q_xy*v->prr_q_x - v->prr_Q_xx*v->prr_q_y;
     v->prr_M_ta_t_2 = v->prr_Q_yy*v->prr_q_x - v->prr_Q_xy*v->prr_q_y;
@@ -1428,6 +1439,30 @@ INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
         prr_f_1_in_axes0_x*v->prr_s_2 + v->prr_c_2*prr_c_t_3;
 }
 
+INLINE void any_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_prr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1488,17 +1523,6 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void dynamics_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -1553,15 +1577,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[8] = {0}, sums[9] = {0};
-    real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[8] CLEARED, sums[9] CLEARED;
+    real terms_prr[9*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        dynamics_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
+        any_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
@@ -1586,7 +1610,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
+            any_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1621,12 +1645,6 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
-}
-
-INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -1665,15 +1683,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[5] = {0}, sums[6] = {0};
-    real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[5] CLEARED, sums[6] CLEARED;
+    real terms_prr[6*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         M_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        M_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
+        any_place_prr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
@@ -1696,7 +1714,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_prr(k, k, LANES, o_prr, t);
+            any_place_prr_2(k, k, LANES, o_prr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1744,12 +1762,6 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
@@ -1773,15 +1785,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[6] = {0}, sums[3] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[6] CLEARED, sums[3] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     Z_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        Z_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
+        any_place_prr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
@@ -1806,7 +1818,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_prr(k, k, LANES, o_prr, t);
+            any_place_prr_2(k, k, LANES, o_prr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1815,13 +1827,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -1837,28 +1842,17 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void H_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[3] = {0};
-    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         H_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        H_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
+        any_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
 }
 
@@ -1869,27 +1863,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
+            any_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -1976,12 +1962,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[6] = {0}, sums[3] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[6] CLEARED, sums[3] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        required_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr, o_prr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            required_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr,
+                o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         required_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
@@ -2000,7 +1989,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2018,14 +2007,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -2054,10 +2035,10 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[3] = {0};
-    real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         inverse_kinematics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -2073,7 +2054,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_prr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2086,14 +2067,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2125,10 +2098,10 @@ INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[3] = {0};
-    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_rates_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, o_prr);
     }
@@ -2144,7 +2117,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2157,14 +2130,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2195,10 +2160,10 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[3] = {0};
-    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_accelerations_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
     }
@@ -2214,7 +2179,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2227,13 +2192,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2276,14 +2234,16 @@ INLINE void legs_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[3] = {0};
-    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        legs_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            legs_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         legs_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, leg_force, actuator, t);
@@ -2291,14 +2251,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -2345,12 +2297,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[4] = {0}, sums[1] = {0};
-    real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
+    real s[4] CLEARED, sums[1] CLEARED;
+    real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        potential_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            potential_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr,
+                o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         potential_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
@@ -2430,8 +2385,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[3] = {0}, sums[1] = {0};
-    real terms_prr[LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED, sums[1] CLEARED;
+    real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
@@ -2679,7 +2634,7 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2728,8 +2683,8 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2798,7 +2753,7 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2815,7 +2770,7 @@ int planar_3prr_leg_reactions(const prepared *m, const real *X, const real *V, c
 int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2836,8 +2791,8 @@ int planar_3prr_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2868,9 +2823,9 @@ int planar_3prr_manipulability(const prepared *m, const real *X, real *measure_o
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2902,9 +2857,9 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2935,7 +2890,7 @@ int planar_3prr_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3020,7 +2975,7 @@ int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3033,7 +2988,7 @@ int planar_3prr_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3045,7 +3000,7 @@ int planar_3prr_momentum(const prepared *m, const real *X, const real *V, real *
 int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3060,7 +3015,7 @@ int planar_3prr_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3074,7 +3029,7 @@ int planar_3prr_within_limits(const prepared *m, const real *X, real *within_out
 
 int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3085,7 +3040,7 @@ int planar_3prr_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3097,7 +3052,7 @@ int planar_3prr_actuator_rates(const prepared *m, const real *X, const real *V, 
 int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3109,7 +3064,7 @@ int planar_3prr_actuator_accelerations(const prepared *m, const real *X, const r
 int planar_3prr_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3153,7 +3108,7 @@ int planar_3prr_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3166,7 +3121,7 @@ int planar_3prr_retract(const real *X, const real *step, real *X_moved_out)
 int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3182,7 +3137,7 @@ int planar_3prr_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_3prr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -1796,8 +1796,8 @@ def _run_dynamics(m, X, V):
         prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
         prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
         prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
-        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
         prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
         # (prr-U) velocity and gravity terms of the leg force
         prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
         prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
@@ -1948,8 +1948,8 @@ def _run_M(m, X):
         prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
         prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
         prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
-        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
         prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
         # (M_ta) coupling block of M
         prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y
         prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y

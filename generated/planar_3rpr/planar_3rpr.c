@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1182,7 +1193,7 @@ typedef struct {
         rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
         rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
         rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
         rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
         rpr_c_in_axes1_y;
 } values_rpr;
@@ -1292,8 +1303,8 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
         v->axis_x_rpr_axes1_x*rpr_Q_t;
     v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
-    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
     v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
@@ -1361,11 +1372,7 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
         v->inv_rpr_q_2*rpr_mu_1_in_axes1_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1374,6 +1381,31 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[3*w + k] = v->h_star_y;
 }
 
+INLINE void any_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -1419,16 +1451,6 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
-}
-
-INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -1485,15 +1507,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
-    real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real s[7] CLEARED, sums[9] CLEARED;
+    real terms_rpr[9*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        dynamics_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1509,7 +1531,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rpr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
@@ -1518,7 +1540,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1527,15 +1549,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
-}
-
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -1553,11 +1566,6 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
-}
-
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -1596,15 +1604,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
-    real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real s[4] CLEARED, sums[6] CLEARED;
+    real terms_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        M_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1619,7 +1627,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_rpr[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -1627,7 +1635,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1636,13 +1644,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
@@ -1673,11 +1674,6 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
@@ -1701,15 +1697,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        Z_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -1725,7 +1721,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rpr[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
@@ -1734,7 +1730,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1743,13 +1739,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -1765,27 +1754,17 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        H_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
 }
 
@@ -1796,27 +1775,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rpr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -1902,12 +1873,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr,
+                o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
@@ -1926,7 +1900,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -1944,14 +1918,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -1979,10 +1945,10 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -1998,7 +1964,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2011,14 +1977,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2046,10 +2004,10 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -2065,7 +2023,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2078,14 +2036,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2117,10 +2067,10 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -2136,7 +2086,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rpr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2149,13 +2099,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2197,14 +2140,16 @@ INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         legs_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, leg_force, actuator, t);
@@ -2212,14 +2157,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -2248,11 +2185,6 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -2265,15 +2197,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real s[3] CLEARED, sums[1] CLEARED;
+    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr,
+                o_rpr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        potential_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
@@ -2349,8 +2284,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED, sums[1] CLEARED;
+    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -2599,7 +2534,7 @@ int planar_3rpr_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2648,8 +2583,8 @@ int planar_3rpr_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2718,7 +2653,7 @@ int planar_3rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2735,7 +2670,7 @@ int planar_3rpr_leg_reactions(const prepared *m, const real *X, const real *V, c
 int planar_3rpr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2756,8 +2691,8 @@ int planar_3rpr_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2788,9 +2723,9 @@ int planar_3rpr_manipulability(const prepared *m, const real *X, real *measure_o
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2822,9 +2757,9 @@ int planar_3rpr_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2855,7 +2790,7 @@ int planar_3rpr_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[3] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -2940,7 +2875,7 @@ int planar_3rpr_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -2953,7 +2888,7 @@ int planar_3rpr_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int planar_3rpr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2965,7 +2900,7 @@ int planar_3rpr_momentum(const prepared *m, const real *X, const real *V, real *
 int planar_3rpr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2980,7 +2915,7 @@ int planar_3rpr_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int planar_3rpr_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2994,7 +2929,7 @@ int planar_3rpr_within_limits(const prepared *m, const real *X, real *within_out
 
 int planar_3rpr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3005,7 +2940,7 @@ int planar_3rpr_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int planar_3rpr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3017,7 +2952,7 @@ int planar_3rpr_actuator_rates(const prepared *m, const real *X, const real *V, 
 int planar_3rpr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3029,7 +2964,7 @@ int planar_3rpr_actuator_accelerations(const prepared *m, const real *X, const r
 int planar_3rpr_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3073,7 +3008,7 @@ int planar_3rpr_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_3rpr_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3086,7 +3021,7 @@ int planar_3rpr_retract(const real *X, const real *step, real *X_moved_out)
 int planar_3rpr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3102,7 +3037,7 @@ int planar_3rpr_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_3rpr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1251,14 +1262,14 @@ INLINE void stage_V_X(values *v)
 }
 
 typedef struct {
-    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
-        inv_rrr_r_1_in_axes2_y, rrr_w_1_t_3, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
-        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y,
-        rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t,
-        rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx,
-        rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
+        axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
+        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
+        rrr_a_p_y, rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_t, rrr_bias_in_axes2_x,
+        rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
+        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1300,23 +1311,22 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_t_3 = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
@@ -1329,7 +1339,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
         v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y + v->rrr_q_y*v->rrr_w_1_t_3;
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y + v->rrr_q_y*v->rrr_w_1_t;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -1347,31 +1357,30 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (rrr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
-    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_4;
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
-        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = v->rrr_qd_1_t*v->rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
-    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1389,7 +1398,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
     /* (rrr-qdd_1) acceleration of joint 1 */
     v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-qdd_2) acceleration of joint 2 */
@@ -1425,8 +1434,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
@@ -1444,7 +1453,7 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y + v->rrr_bias_t;
     /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
     const real rrr_B_1_o_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
     /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
@@ -1514,11 +1523,7 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_G_in_axes2_y;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1527,6 +1532,33 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[3*w + k] = v->h_star_y;
 }
 
+INLINE void any_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -1565,25 +1597,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (Z_a) rotational part of Z */
     gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rrr_w_1_t_3;
+    o[0*count + k] = -v.rrr_w_1_t;
     o[1*count + k] = v.rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_t_3 + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -1640,15 +1661,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[7] CLEARED, sums[9] CLEARED;
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1664,7 +1685,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
@@ -1673,7 +1694,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1682,15 +1703,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -1709,12 +1721,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -1753,15 +1759,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] CLEARED, sums[6] CLEARED;
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1776,7 +1782,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -1784,7 +1790,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1793,13 +1799,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
@@ -1831,12 +1830,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
@@ -1860,15 +1853,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -1884,7 +1877,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
@@ -1893,7 +1886,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1902,51 +1895,33 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rrr_w_1_t_3;
+    o[0*count + k] = -v.rrr_w_1_t;
     o[1*count + k] = v.rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_t_3 + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -1957,27 +1932,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2023,7 +1990,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (R_a) */
     gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rrr_w_1_t_3;
+    o[0*count + k] = -v.rrr_w_1_t;
     o[1*count + k] = v.rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v.rrr_H_a_1_z;
@@ -2065,12 +2032,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
@@ -2089,7 +2059,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2107,14 +2077,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -2123,7 +2085,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -2145,10 +2107,10 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
@@ -2164,7 +2126,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2177,14 +2139,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2214,10 +2168,10 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
     }
@@ -2233,7 +2187,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2246,14 +2200,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2285,10 +2231,10 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
     }
@@ -2304,7 +2250,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2317,13 +2263,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2346,7 +2285,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = -v.rrr_w_1_t_3;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
@@ -2367,14 +2306,16 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         legs_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, leg_force, actuator, t);
@@ -2382,14 +2323,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -2410,20 +2343,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -2438,15 +2365,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED, sums[1] CLEARED;
+    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
@@ -2485,14 +2415,14 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     /* (spread) */
     gather(&terms[0*count + k], add, rrr_spread_t_3);  /* spread_rrr */
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rrr_w_1_t_3;
+    o[0*count + k] = -v.rrr_w_1_t;
     o[1*count + k] = v.rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v.rrr_H_a_1_z;
     /* (rrr-G) */
     o[3*count + k] = rrr_least_pivots;
     o[4*count + k] = v.rrr_disc_1;
-    o[7*count + k] = (v.rrr_w_1_t_3 + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+    o[7*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
         v.rrr_disc_1));
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
@@ -2526,8 +2456,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED, sums[1] CLEARED;
+    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -2775,7 +2705,7 @@ int planar_3rrr_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2824,8 +2754,8 @@ int planar_3rrr_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2894,7 +2824,7 @@ int planar_3rrr_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2911,7 +2841,7 @@ int planar_3rrr_leg_reactions(const prepared *m, const real *X, const real *V, c
 int planar_3rrr_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2932,8 +2862,8 @@ int planar_3rrr_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2964,9 +2894,9 @@ int planar_3rrr_manipulability(const prepared *m, const real *X, real *measure_o
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2998,9 +2928,9 @@ int planar_3rrr_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3032,8 +2962,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {0, 1, 2};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3122,7 +3052,7 @@ int planar_3rrr_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3135,7 +3065,7 @@ int planar_3rrr_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int planar_3rrr_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3147,7 +3077,7 @@ int planar_3rrr_momentum(const prepared *m, const real *X, const real *V, real *
 int planar_3rrr_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3162,7 +3092,7 @@ int planar_3rrr_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int planar_3rrr_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3176,7 +3106,7 @@ int planar_3rrr_within_limits(const prepared *m, const real *X, real *within_out
 
 int planar_3rrr_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3187,7 +3117,7 @@ int planar_3rrr_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int planar_3rrr_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3199,7 +3129,7 @@ int planar_3rrr_actuator_rates(const prepared *m, const real *X, const real *V, 
 int planar_3rrr_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3211,7 +3141,7 @@ int planar_3rrr_actuator_accelerations(const prepared *m, const real *X, const r
 int planar_3rrr_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3255,7 +3185,7 @@ int planar_3rrr_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_3rrr_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3268,7 +3198,7 @@ int planar_3rrr_retract(const real *X, const real *step, real *X_moved_out)
 int planar_3rrr_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3284,7 +3214,7 @@ int planar_3rrr_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_3rrr_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

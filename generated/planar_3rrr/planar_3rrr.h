@@ -128,19 +128,19 @@ extern const char *const planar_3rrr_ACTUATOR_NAMES[PLANAR_3RRR_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *model);
 
-/* Inertia matrix M. 220 mul, 148 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 208 mul, 142 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_3rrr_M(const planar_3rrr_model *model, const planar_3rrr_real *X, planar_3rrr_real *M);
 size_t planar_3rrr_M_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
     planar_3rrr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 300 mul, 182 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 285 mul, 176 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_3rrr_Z(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *Z);
 size_t planar_3rrr_Z_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
     const planar_3rrr_real *V, planar_3rrr_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 141 mul, 69 add, 6 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 132 mul, 63 add, 6 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int planar_3rrr_H(const planar_3rrr_model *model, const planar_3rrr_real *X, planar_3rrr_real *H);
 size_t planar_3rrr_H_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
@@ -153,14 +153,14 @@ int planar_3rrr_inverse_kinematics(const planar_3rrr_model *model, const planar_
 size_t planar_3rrr_inverse_kinematics_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *q, int *status);
 
-/* Rates of all joints. 162 mul, 84 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 150 mul, 78 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_3rrr_joint_rates(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *rates);
 size_t planar_3rrr_joint_rates_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *rates, int *status);
 
-/* Accelerations of all joints. 216 mul, 117 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 198 mul, 111 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_3rrr_joint_accelerations(const planar_3rrr_model *model, const planar_3rrr_real *X,
     const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *accelerations);
@@ -168,7 +168,7 @@ size_t planar_3rrr_joint_accelerations_batch(const planar_3rrr_model *model, siz
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 393 mul, 262 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 378 mul, 256 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3rrr_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H);
@@ -176,7 +176,7 @@ size_t planar_3rrr_dynamics_batch(const planar_3rrr_model *model, size_t n, cons
     *X, const planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 323 mul, 202 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 308 mul, 196 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3rrr_inverse_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -186,7 +186,7 @@ size_t planar_3rrr_inverse_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, const
     planar_3rrr_real *wrench, planar_3rrr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 393 mul, 262 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 378 mul, 256 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3rrr_forward_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -207,7 +207,7 @@ size_t planar_3rrr_complete_acceleration_batch(const planar_3rrr_model *model, s
     planar_3rrr_real *wrench, planar_3rrr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 303 mul, 180 add, 6 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 288 mul, 174 add, 6 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_3rrr_leg_reactions(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, const planar_3rrr_real *A, const planar_3rrr_real *wrench,
@@ -227,7 +227,7 @@ size_t planar_3rrr_energy_batch(const planar_3rrr_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 154 mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 145 mul, 78 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int planar_3rrr_condition(const planar_3rrr_model *model, const planar_3rrr_real *X,
     planar_3rrr_real *sigma, planar_3rrr_real *legs);
@@ -235,15 +235,15 @@ size_t planar_3rrr_condition_batch(const planar_3rrr_model *model, size_t n, con
     planar_3rrr_real *X, planar_3rrr_real *sigma, planar_3rrr_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 154 mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values
+   the least over the largest of them. 145 mul, 78 add, 6 div, 7 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int planar_3rrr_manipulability(const planar_3rrr_model *model, const planar_3rrr_real *X,
     planar_3rrr_real *measure, planar_3rrr_real *isotropy);
 size_t planar_3rrr_manipulability_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *measure, planar_3rrr_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 154
-   mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 145
+   mul, 78 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int planar_3rrr_singularity_distance(const planar_3rrr_model *model, const planar_3rrr_real *X,
     planar_3rrr_real *actuators, planar_3rrr_real *legs);
@@ -265,7 +265,7 @@ int planar_3rrr_dissipation(const planar_3rrr_model *model, const planar_3rrr_re
 size_t planar_3rrr_dissipation_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *dissipation, int *status);
 
-/* Generalised momentum M V. 220 mul, 148 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 208 mul, 142 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int planar_3rrr_momentum(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *momentum);
@@ -293,14 +293,14 @@ int planar_3rrr_actuator_positions(const planar_3rrr_model *model, const planar_
 size_t planar_3rrr_actuator_positions_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 162 mul, 84 add, 6 div, 3 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 150 mul, 78 add, 6 div, 3 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int planar_3rrr_actuator_rates(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *rates);
 size_t planar_3rrr_actuator_rates_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 216 mul, 117 add, 6 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 198 mul, 111 add, 6 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int planar_3rrr_actuator_accelerations(const planar_3rrr_model *model, const planar_3rrr_real *X,
     const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *accelerations);

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1311,7 +1322,7 @@ typedef struct {
         rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
         rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
         rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
         rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
         rpr_c_in_axes1_y;
 } values_rpr;
@@ -1421,8 +1432,8 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
         v->axis_x_rpr_axes1_x*rpr_Q_t;
     v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
-    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
     v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
@@ -1497,7 +1508,7 @@ typedef struct {
         rpr_leg4_S_dot_in_axes1_x, rpr_leg4_qd_1, rpr_leg4_W_1_in_axes1_xx, rpr_leg4_u_1_t,
         rpr_leg4_u_1_y, rpr_leg4_bias_in_axes1_y, rpr_leg4_phi_2_t, rpr_leg4_c_t,
         rpr_leg4_S_ddot_in_axes1_x, rpr_leg4_S_ddot_in_axes1_y, rpr_leg4_qdd_1, rpr_leg4_Q_xx,
-        rpr_leg4_Q_xy, rpr_leg4_Q_yy, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2, rpr_leg4_M_aa_t,
+        rpr_leg4_Q_yy, rpr_leg4_Q_xy, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2, rpr_leg4_M_aa_t,
         rpr_leg4_U_x, rpr_leg4_U_y, rpr_leg4_Z_a_t, rpr_leg4_acc_2_in_axes1_x,
         rpr_leg4_acc_2_in_axes1_y, rpr_leg4_phi_2_in_axes1_x, rpr_leg4_c_in_axes1_y;
 } values_rpr_leg4;
@@ -1611,9 +1622,9 @@ INLINE void stage_rpr_leg4_M_dynamics(const prepared *m, size_t i, values_rpr_le
     const real rpr_leg4_Q_t_3 = v->axis_x_rpr_leg4_axes1_y*rpr_leg4_d_c_in_axes1_xy +
         v->axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t;
     v->rpr_leg4_Q_xx = -2*v->axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_2;
+    v->rpr_leg4_Q_yy = -2*v->axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3;
     v->rpr_leg4_Q_xy = v->axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_2 +
         v->axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_3;
-    v->rpr_leg4_Q_yy = -2*v->axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rpr_leg4_M_ta_t = v->rpr_leg4_Q_xy*v->rpr_leg4_q_x - v->rpr_leg4_Q_xx*v->rpr_leg4_q_y;
     v->rpr_leg4_M_ta_t_2 = v->rpr_leg4_Q_yy*v->rpr_leg4_q_x -
@@ -1692,11 +1703,7 @@ INLINE void stage_rpr_leg4_legs_required(const prepared *m, size_t i, values_rpr
         v->inv_rpr_leg4_q_2*rpr_leg4_mu_1_in_axes1_z;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1705,6 +1712,31 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[3*w + k] = v->h_star_y;
 }
 
+INLINE void any_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -1752,16 +1784,6 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
         LEAST_2);
 }
 
-INLINE void dynamics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 INLINE void dynamics_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -1786,12 +1808,6 @@ INLINE void dynamics_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t
     gather(&terms[8*count + k], add, v.rpr_leg4_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_leg4_q_2_t) > LEAST_1) +
         UNLESS(magnitude(v.rpr_leg4_q_2) > LEAST_2);
-}
-
-INLINE void dynamics_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -1848,11 +1864,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
-    real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[9*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[7] CLEARED, sums[9] CLEARED;
+    real terms_rpr[9*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[9*LEGS(LEGS_OF_rpr_leg4)] CLEARED, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -1860,13 +1876,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         dynamics_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, V, terms_rpr_leg4, o_rpr_leg4);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        dynamics_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
-        dynamics_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
@@ -1885,7 +1901,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rpr_leg4[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
@@ -1894,7 +1910,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
@@ -1902,7 +1918,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rpr_leg4(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr_leg4);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1911,15 +1927,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
-}
-
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -1939,11 +1946,6 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void M_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -1961,11 +1963,6 @@ INLINE void M_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, siz
     gather(&terms[5*count + k], add, v.rpr_leg4_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_leg4_q_2_t) > LEAST_1) +
         UNLESS(magnitude(v.rpr_leg4_q_2) > LEAST_2);
-}
-
-INLINE void M_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2004,11 +2001,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
-    real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[6*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[4] CLEARED, sums[6] CLEARED;
+    real terms_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[6*LEGS(LEGS_OF_rpr_leg4)] CLEARED, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -2016,13 +2013,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, terms_rpr_leg4, o_rpr_leg4);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        M_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
-        M_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
@@ -2040,7 +2037,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_rpr_leg4[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
@@ -2048,7 +2045,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
@@ -2056,7 +2053,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rpr_leg4(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr_leg4);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2065,13 +2062,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
@@ -2102,11 +2092,6 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2121,11 +2106,6 @@ INLINE void Z_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, siz
     gather(&terms[2*count + k], add, v.rpr_leg4_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_leg4_q_2_t) > LEAST_1) +
         UNLESS(magnitude(v.rpr_leg4_q_2) > LEAST_2);
-}
-
-INLINE void Z_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2151,11 +2131,11 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] CLEARED, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -2163,13 +2143,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, V, terms_rpr_leg4, o_rpr_leg4);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        Z_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
-        Z_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
@@ -2188,7 +2168,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rpr_leg4[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2197,7 +2177,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
@@ -2205,7 +2185,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rpr_leg4(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr_leg4);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2214,13 +2194,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2236,27 +2209,17 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void H_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        H_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
 }
 
@@ -2267,27 +2230,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rpr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2377,12 +2332,6 @@ INLINE void required_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t
         UNLESS(magnitude(v.rpr_leg4_q_2) > LEAST_2);
 }
 
-INLINE void required_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
     /* (R_t) */
@@ -2406,16 +2355,22 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] CLEARED, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr,
+                o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr_leg4); ++k) {
-        required_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, V, A, terms_rpr_leg4, o_rpr_leg4);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr_leg4); i += BESIDE(LEGS_OF_rpr_leg4)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr_leg4); ++k) {
+            required_legs_rpr_leg4(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, V, A,
+                terms_rpr_leg4, o_rpr_leg4);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
@@ -2424,7 +2379,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
-        required_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
@@ -2443,7 +2398,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rpr_leg4[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2460,7 +2415,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
             required_legs_rpr_leg4(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rpr_leg4);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            required_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
+            any_place_rpr_leg4(k, k, LANES, o_rpr_leg4, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2469,14 +2424,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -2529,11 +2476,11 @@ INLINE void inverse_kinematics_place_rpr_leg4(size_t w, size_t k, size_t at, siz
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -2556,7 +2503,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rpr_leg4[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2577,14 +2524,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2636,11 +2575,11 @@ INLINE void joint_rates_place_rpr_leg4(size_t w, size_t k, size_t at, size_t cou
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -2663,7 +2602,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rpr_leg4[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2684,14 +2623,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2752,11 +2683,11 @@ INLINE void joint_accelerations_place_rpr_leg4(size_t w, size_t k, size_t at, si
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rpr_leg4[4*LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -2779,7 +2710,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rpr_leg4[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2800,13 +2731,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -2881,18 +2805,23 @@ INLINE void legs_place_rpr_leg4(size_t w, size_t k, size_t at, size_t count, con
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[2] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr_leg4); ++k) {
-        legs_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), s, X, V, A, o_rpr_leg4);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr_leg4); i += BESIDE(LEGS_OF_rpr_leg4)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr_leg4); ++k) {
+            legs_legs_rpr_leg4(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr_leg4), s, X, V, A,
+                o_rpr_leg4);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         legs_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, leg_force, actuator, t);
@@ -2903,14 +2832,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -2939,11 +2860,6 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2963,12 +2879,6 @@ INLINE void potential_legs_rpr_leg4(const prepared *m, size_t w, size_t i, size_
         UNLESS(magnitude(v.rpr_leg4_q_2) > LEAST_2);
 }
 
-INLINE void potential_place_rpr_leg4(size_t k, size_t at, size_t count, const real *o,
-    status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -2982,25 +2892,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[2*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[3] CLEARED, sums[2] CLEARED;
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[2*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr,
+                o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr_leg4); ++k) {
-        potential_legs_rpr_leg4(m, 1, k, 0, k, LEGS(LEGS_OF_rpr_leg4), 0, s, X, terms_rpr_leg4, o_rpr_leg4);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr_leg4); i += BESIDE(LEGS_OF_rpr_leg4)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr_leg4); ++k) {
+            potential_legs_rpr_leg4(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr_leg4), 0, s, X,
+                terms_rpr_leg4, o_rpr_leg4);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        potential_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr_leg4; ++i) {
-        potential_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
+        any_place_rpr_leg4(0, i, LEGS(LEGS_OF_rpr_leg4), o_rpr_leg4, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rpr_leg4; ++leg) {
@@ -3111,9 +3027,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rpr_leg4[2*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] = {0};
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rpr_leg4[2*LEGS(LEGS_OF_rpr_leg4)] = {0}, o_rpr_leg4[3*LEGS(LEGS_OF_rpr_leg4)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3373,7 +3289,7 @@ int planar_4rpr_free_inverse_dynamics(const prepared *m, const real *X, const re
     *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -3422,8 +3338,8 @@ int planar_4rpr_free_forward_dynamics(const prepared *m, const real *X, const re
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3492,7 +3408,7 @@ int planar_4rpr_free_leg_reactions(const prepared *m, const real *X, const real 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NV] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3509,7 +3425,7 @@ int planar_4rpr_free_leg_reactions(const prepared *m, const real *X, const real 
 int planar_4rpr_free_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3530,8 +3446,8 @@ int planar_4rpr_free_condition(const prepared *m, const real *X, real *sigma_out
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3562,9 +3478,9 @@ int planar_4rpr_free_manipulability(const prepared *m, const real *X, real *meas
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3596,9 +3512,9 @@ int planar_4rpr_free_singularity_distance(const prepared *m, const real *X, real
     real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3629,7 +3545,7 @@ int planar_4rpr_free_singularity_distance(const prepared *m, const real *X, real
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[3] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3714,7 +3630,7 @@ int planar_4rpr_free_dissipation(const prepared *m, const real *X, const real *V
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3727,7 +3643,7 @@ int planar_4rpr_free_dissipation(const prepared *m, const real *X, const real *V
 
 int planar_4rpr_free_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3739,7 +3655,7 @@ int planar_4rpr_free_momentum(const prepared *m, const real *X, const real *V, r
 int planar_4rpr_free_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3754,7 +3670,7 @@ int planar_4rpr_free_joint_margins(const prepared *m, const real *X, real *margi
 
 int planar_4rpr_free_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3768,7 +3684,7 @@ int planar_4rpr_free_within_limits(const prepared *m, const real *X, real *withi
 
 int planar_4rpr_free_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3779,7 +3695,7 @@ int planar_4rpr_free_actuator_positions(const prepared *m, const real *X, real *
 
 int planar_4rpr_free_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3791,7 +3707,7 @@ int planar_4rpr_free_actuator_rates(const prepared *m, const real *X, const real
 int planar_4rpr_free_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3803,7 +3719,7 @@ int planar_4rpr_free_actuator_accelerations(const prepared *m, const real *X, co
 int planar_4rpr_free_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3847,7 +3763,7 @@ int planar_4rpr_free_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_4rpr_free_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -3860,7 +3776,7 @@ int planar_4rpr_free_retract(const real *X, const real *step, real *X_moved_out)
 int planar_4rpr_free_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -3876,7 +3792,7 @@ int planar_4rpr_free_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_4rpr_free_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -1916,8 +1916,8 @@ def _run_dynamics(m, X, V):
         rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
         rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
         rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
-        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
         rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
         # (rpr-U) velocity and gravity terms of the leg force
         rpr_U_x = (
         axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
@@ -2062,10 +2062,10 @@ def _run_dynamics(m, X, V):
         axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t + axis_x_rpr_leg4_axes1_y*rpr_leg4_d_c_in_axes1_xy
         )
         rpr_leg4_Q_xx = -2.0*axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_2
+        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         rpr_leg4_Q_xy = (
         axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_2 + axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_3
         )
-        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         # (rpr_leg4-U) velocity and gravity terms of the leg force
         rpr_leg4_U_x = (
         axis_x_rpr_leg4_axes1_x*rpr_leg4_phi_2_o_in_axes1_x +
@@ -2187,8 +2187,8 @@ def _run_M(m, X):
         rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
         rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
         rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
-        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
         rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
         # (M_ta) coupling block of M
         rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
         rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
@@ -2254,10 +2254,10 @@ def _run_M(m, X):
         axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t + axis_x_rpr_leg4_axes1_y*rpr_leg4_d_c_in_axes1_xy
         )
         rpr_leg4_Q_xx = -2.0*axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_2
+        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         rpr_leg4_Q_xy = (
         axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_2 + axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_3
         )
-        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         # (M_ta) coupling block of M
         rpr_leg4_M_ta_t = rpr_leg4_Q_xy*rpr_leg4_q_x - rpr_leg4_Q_xx*rpr_leg4_q_y
         rpr_leg4_M_ta_t_2 = rpr_leg4_Q_yy*rpr_leg4_q_x - rpr_leg4_Q_xy*rpr_leg4_q_y

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1514,7 +1525,7 @@ typedef struct {
         prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
         prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
         prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
-        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_yy, prr_Q_xy, prr_M_ta_t,
         prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
         prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
@@ -1655,8 +1666,8 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     const real prr_Q_t_4 = v->axis_y_prr_axes2_x*prr_d_c_in_axes2_xy +
         v->axis_x_prr_axes2_x*prr_Q_t_2;
     v->prr_Q_xx = 2*v->axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
-    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
     v->prr_Q_yy = 2*v->axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+    v->prr_Q_xy = v->axis_x_prr_axes2_x*prr_Q_t_3 + v->axis_y_prr_axes2_x*prr_Q_t_4;
     /* (M_ta) coupling block of M */
     v->prr_M_ta_t = v->prr_Q_xy*v->prr_q_x - v->prr_Q_xx*v->prr_q_y;
     v->prr_M_ta_t_2 = v->prr_Q_yy*v->prr_q_x - v->prr_Q_xy*v->prr_q_y;
@@ -1742,7 +1753,7 @@ typedef struct {
         rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
         rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
         rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
+        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
         rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
         rpr_c_in_axes1_y;
 } values_rpr;
@@ -1852,8 +1863,8 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     const real rpr_Q_t_3 = v->axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy +
         v->axis_x_rpr_axes1_x*rpr_Q_t;
     v->rpr_Q_xx = -2*v->axis_x_rpr_axes1_y*rpr_Q_t_2;
-    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     v->rpr_Q_yy = -2*v->axis_x_rpr_axes1_x*rpr_Q_t_3;
+    v->rpr_Q_xy = v->axis_x_rpr_axes1_x*rpr_Q_t_2 + v->axis_x_rpr_axes1_y*rpr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rpr_M_ta_t = v->rpr_Q_xy*v->rpr_q_x - v->rpr_Q_xx*v->rpr_q_y;
     v->rpr_M_ta_t_2 = v->rpr_Q_yy*v->rpr_q_x - v->rpr_Q_xy*v->rpr_q_y;
@@ -1922,14 +1933,14 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 }
 
 typedef struct {
-    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
-        rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
-        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y, rrr_qd_1,
-        rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2,
-        rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy,
-        rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
+        axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
+        rrr_r_1_in_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
+        rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
+        rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
+        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1971,21 +1982,20 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
     v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
     v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
@@ -2018,31 +2028,30 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (rrr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
-    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_4;
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
-        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    v->rrr_qd_1 = rrr_S_dot_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
-    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*v->rrr_qd_1;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1*v->rrr_qd_1 -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -2097,8 +2106,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
@@ -2185,6 +2194,56 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_G_in_axes2_y;
 }
 
+INLINE void any_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[1*w + k] = o[0*count + at];
+    H[(NU + 1)*w + k] = o[1*count + at];
+    H[(2*NU + 1)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -2245,16 +2304,6 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
         LEAST_2);
 }
 
-INLINE void dynamics_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[2*NU*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2288,17 +2337,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[1*w + k] = o[0*count + at];
-    H[(NU + 1)*w + k] = o[1*count + at];
-    H[(2*NU + 1)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2329,17 +2367,6 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
-}
-
-INLINE void dynamics_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    H[(2*NU + 2)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2396,10 +2423,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[8] = {0}, sums[9] = {0};
-    real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[8] CLEARED, sums[9] CLEARED;
+    real terms_rpr[9*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[9*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -2412,13 +2439,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        dynamics_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2426,7 +2453,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        dynamics_place_prr(1, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
+        any_place_prr(1, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
@@ -2455,7 +2482,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2463,7 +2490,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -2471,7 +2498,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_prr(LANES, k, k, LANES, o_prr, H, t);
+            any_place_prr(LANES, k, k, LANES, o_prr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2508,11 +2535,6 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void M_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2533,12 +2555,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2556,12 +2572,6 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
-}
-
-INLINE void M_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2600,10 +2610,10 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[5] = {0}, sums[6] = {0};
-    real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[5] CLEARED, sums[6] CLEARED;
+    real terms_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[6*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -2616,13 +2626,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        M_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2630,7 +2640,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        M_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
@@ -2657,7 +2667,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2665,7 +2675,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -2673,7 +2683,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_prr(k, k, LANES, o_prr, t);
+            any_place_rrr_2(k, k, LANES, o_prr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2721,11 +2731,6 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
         LEAST_2);
 }
 
-INLINE void Z_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2743,12 +2748,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2763,12 +2762,6 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[2*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
-}
-
-INLINE void Z_place_prr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2794,10 +2787,10 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[6] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[6] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     Z_before(m, 1, 0, X, V, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
@@ -2810,13 +2803,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        Z_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2824,7 +2817,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        Z_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
@@ -2853,7 +2846,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rpr(k, k, LANES, o_rpr, t);
+            any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2861,7 +2854,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -2869,7 +2862,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_prr(k, k, LANES, o_prr, t);
+            any_place_rrr_2(k, k, LANES, o_prr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2878,13 +2871,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2898,16 +2884,6 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
-}
-
-INLINE void H_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[2*NU*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2926,17 +2902,6 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[1*w + k] = o[0*count + at];
-    H[(NU + 1)*w + k] = o[1*count + at];
-    H[(2*NU + 1)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2952,25 +2917,14 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
-INLINE void H_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    H[(2*NU + 2)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[3] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -2981,13 +2935,13 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        H_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
+        any_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
-        H_place_prr(1, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
+        any_place_prr(1, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
 }
 
@@ -3000,14 +2954,14 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_prr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
+            any_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -3015,7 +2969,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
@@ -3023,20 +2977,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_prr(LANES, k, k, LANES, o_prr, H, t);
+            any_place_prr(LANES, k, k, LANES, o_prr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -3207,20 +3153,29 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[6] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[6] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        required_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr, o_rpr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr,
+                o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        required_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr, o_prr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            required_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr,
+                o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
@@ -3257,7 +3212,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -3291,14 +3246,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3332,7 +3279,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -3380,12 +3327,12 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t k, size_t at, size_t c
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[3] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -3415,7 +3362,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_prr[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3444,14 +3391,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3533,12 +3472,12 @@ INLINE void joint_rates_place_prr(size_t w, size_t k, size_t at, size_t count, c
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[3] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -3568,7 +3507,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3597,14 +3536,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3691,12 +3622,12 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t k, size_t at, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[3] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -3726,7 +3657,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_prr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3755,13 +3686,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3882,22 +3806,28 @@ INLINE void legs_place_prr(size_t w, size_t k, size_t at, size_t count, const re
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[3] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED;
+    real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        legs_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        legs_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            legs_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         legs_place_rpr(1, 0, i, LEGS(LEGS_OF_rpr), o_rpr, leg_force, actuator, t);
@@ -3911,14 +3841,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3947,11 +3869,6 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
         LEAST_2);
 }
 
-INLINE void potential_place_rpr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -3961,20 +3878,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_3 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -4014,29 +3925,38 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[4] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
+    real s[4] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
-        potential_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
+    any_before(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
+            potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr,
+                o_rpr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
+                o_rrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
-        potential_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
+            potential_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr,
+                o_prr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
-        potential_place_rpr(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
+        any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -4211,10 +4131,10 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[3] = {0}, sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
+    real s[3] CLEARED, sums[3] CLEARED;
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4485,7 +4405,7 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -4534,8 +4454,8 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4604,7 +4524,7 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4621,7 +4541,7 @@ int planar_mixed_leg_reactions(const prepared *m, const real *X, const real *V, 
 int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4642,8 +4562,8 @@ int planar_mixed_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4674,9 +4594,9 @@ int planar_mixed_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4708,9 +4628,9 @@ int planar_mixed_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4742,8 +4662,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {1};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4832,7 +4752,7 @@ int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4845,7 +4765,7 @@ int planar_mixed_dissipation(const prepared *m, const real *X, const real *V, re
 
 int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4857,7 +4777,7 @@ int planar_mixed_momentum(const prepared *m, const real *X, const real *V, real 
 int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4872,7 +4792,7 @@ int planar_mixed_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int planar_mixed_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4886,7 +4806,7 @@ int planar_mixed_within_limits(const prepared *m, const real *X, real *within_ou
 
 int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4897,7 +4817,7 @@ int planar_mixed_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4909,7 +4829,7 @@ int planar_mixed_actuator_rates(const prepared *m, const real *X, const real *V,
 int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4921,7 +4841,7 @@ int planar_mixed_actuator_accelerations(const prepared *m, const real *X, const 
 int planar_mixed_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4965,7 +4885,7 @@ int planar_mixed_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4978,7 +4898,7 @@ int planar_mixed_retract(const real *X, const real *step, real *X_moved_out)
 int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4994,7 +4914,7 @@ int planar_mixed_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

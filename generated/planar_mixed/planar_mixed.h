@@ -181,20 +181,20 @@ extern const char *const planar_mixed_ACTUATOR_NAMES[PLANAR_MIXED_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *model);
 
-/* Inertia matrix M. 172 mul, 129 add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 168 mul, 127 add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_mixed_M(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
     *M);
 size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     planar_mixed_real *M, int *status);
 
-/* Velocity and gravity terms Z. 222 mul, 147 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 217 mul, 145 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_mixed_Z(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *Z);
 size_t planar_mixed_Z_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     const planar_mixed_real *V, planar_mixed_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 93 mul, 51 add, 4 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 90 mul, 49 add, 4 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int planar_mixed_H(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
     *H);
@@ -208,14 +208,14 @@ int planar_mixed_inverse_kinematics(const planar_mixed_model *model, const plana
 size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *q, int *status);
 
-/* Rates of all joints. 100 mul, 57 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 96 mul, 55 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_mixed_joint_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *rates);
 size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
 
-/* Accelerations of all joints. 148 mul, 86 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 142 mul, 84 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_mixed_joint_accelerations(const planar_mixed_model *model, const planar_mixed_real *X,
     const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);
@@ -223,7 +223,7 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
     planar_mixed_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 322 mul, 234 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 317 mul, 232 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H);
@@ -231,7 +231,7 @@ size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, co
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
     planar_mixed_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 250 mul, 171 add, 4 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 245 mul, 169 add, 4 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_mixed_inverse_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -241,7 +241,7 @@ size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 322 mul, 234 add, 4 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 317 mul, 232 add, 4 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_mixed_forward_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -262,7 +262,7 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     planar_mixed_real *wrench, planar_mixed_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 230 mul, 143 add, 4 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 225 mul, 141 add, 4 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
@@ -282,7 +282,7 @@ size_t planar_mixed_energy_batch(const planar_mixed_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 107 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 104 mul, 65 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *sigma, planar_mixed_real *legs);
@@ -290,15 +290,15 @@ size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, c
     planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 107 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values
+   the least over the largest of them. 104 mul, 65 add, 4 div, 6 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int planar_mixed_manipulability(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *measure, planar_mixed_real *isotropy);
 size_t planar_mixed_manipulability_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *measure, planar_mixed_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 107
-   mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 104
+   mul, 65 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int planar_mixed_singularity_distance(const planar_mixed_model *model, const planar_mixed_real *X,
     planar_mixed_real *actuators, planar_mixed_real *legs);
@@ -320,7 +320,7 @@ int planar_mixed_dissipation(const planar_mixed_model *model, const planar_mixed
 size_t planar_mixed_dissipation_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *dissipation, int *status);
 
-/* Generalised momentum M V. 172 mul, 129 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 168 mul, 127 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int planar_mixed_momentum(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *momentum);
@@ -348,14 +348,14 @@ int planar_mixed_actuator_positions(const planar_mixed_model *model, const plana
 size_t planar_mixed_actuator_positions_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 100 mul, 57 add, 4 div, 3 sqrt, 0 trig. In:
-   X (NQ), V (NV). Out: rates (NU). */
+/* Rates of the actuated joints, in the order of tau. 96 mul, 55 add, 4 div, 3 sqrt, 0 trig. In: X
+   (NQ), V (NV). Out: rates (NU). */
 int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *rates);
 size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 148 mul, 86 add, 4 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 142 mul, 84 add, 4 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int planar_mixed_actuator_accelerations(const planar_mixed_model *model, const planar_mixed_real
     *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);

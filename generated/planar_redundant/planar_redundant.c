@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1479,16 +1490,17 @@ INLINE void stage_V_X(values *v)
 
 typedef struct {
     real prrr_q_x, prrr_q_y, prrr_rho2_2, prrr_disc_2, prrr_c_2, prrr_s_2, prrr_c_3, prrr_s_3_t,
-        prrr_r_2_in_axes3_x, prrr_r_2_in_axes3_y, prrr_w_2_t, prrr_e_1_in_axes3_y,
-        axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y, prrr_w_2_t_2, prrr_w_2_x,
-        prrr_w_2_y, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_g_in_axes3_x, prrr_g_in_axes3_y,
-        prrr_P_c_2_in_axes0_x, prrr_H_a_2_z, prrr_a_p_x, prrr_a_p_y, prrr_qd_2, prrr_qd_3, prrr_u_1_x,
-        prrr_u_1_t, prrr_bias_in_axes3_y, prrr_bias_in_axes3_x, prrr_f_2_t, prrr_f_2_t_2, prrr_c_t,
-        prrr_c_t_2, prrr_S_ddot_in_axes3_x, prrr_S_ddot_in_axes3_y, prrr_qdd_2_t, prrr_qdd_3,
-        prrr_Q_xx, prrr_Q_xy, prrr_Q_yy, prrr_dy_1_P_1, prrr_d_P_1_x, prrr_d_P_1_y, prrr_M_ta_t,
-        prrr_M_ta_t_2, prrr_M_aa_t, prrr_M_ya_1_z, prrr_U_x, prrr_U_y, prrr_P_1_o, prrr_Z_a_t,
-        prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x, prrr_acc_3_in_axes3_y,
-        prrr_G_in_axes3_y, prrr_G_in_axes3_x, prrr_c_in_axes3_x, prrr_c_in_axes3_y;
+        prrr_d_3_in_axes3_x, prrr_r_2_in_axes3_y, prrr_r_2_in_axes3_x, prrr_w_2_t,
+        prrr_e_1_in_axes3_y, axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y,
+        prrr_w_2_t_2, prrr_w_2_x, prrr_w_2_y, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_g_in_axes3_x,
+        prrr_g_in_axes3_y, prrr_P_c_2_in_axes0_x, prrr_H_a_2_z, prrr_a_p_x, prrr_a_p_y, prrr_qd_2,
+        prrr_qd_3, prrr_u_1_x, prrr_u_1_t, prrr_bias_in_axes3_y, prrr_bias_in_axes3_x, prrr_f_2_t,
+        prrr_f_2_t_2, prrr_c_t, prrr_c_t_2, prrr_S_ddot_in_axes3_x, prrr_S_ddot_in_axes3_y,
+        prrr_qdd_2_t, prrr_qdd_3, prrr_Q_xx, prrr_Q_yy, prrr_Q_xy, prrr_dy_1_P_1, prrr_d_P_1_x,
+        prrr_d_P_1_y, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t, prrr_M_ya_1_z, prrr_U_x, prrr_U_y,
+        prrr_P_1_o, prrr_Z_a_t, prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x,
+        prrr_acc_3_in_axes3_y, prrr_G_in_axes3_y, prrr_G_in_axes3_x, prrr_c_in_axes3_x,
+        prrr_c_in_axes3_y;
 } values_prrr;
 
 INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1540,11 +1552,9 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->prrr_s_3_t =
         m->inv_prrr_size_t[i]*m->inv_prrr_size_t_2[i]*m->prrr_joint3_offset_x[i]*m->prrr_platform_joint_offset_x[i]*prrr_root_2;
     /* (prrr-r_2) from joint 2 to the connection point, along the links */
-    const real prrr_r_2_t = m->prrr_platform_joint_offset_x[i]*v->prrr_s_3_t;
-    const real prrr_r_2_in_axes2_x = m->prrr_joint3_offset_x[i] +
-        v->prrr_c_3*m->prrr_platform_joint_offset_x[i];
-    v->prrr_r_2_in_axes3_x = v->prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*v->prrr_s_3_t;
-    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*v->prrr_s_3_t - v->prrr_c_3*prrr_r_2_t;
+    v->prrr_d_3_in_axes3_x = v->prrr_c_3*m->prrr_joint3_offset_x[i];
+    v->prrr_r_2_in_axes3_y = m->prrr_joint3_offset_x[i]*v->prrr_s_3_t;
+    v->prrr_r_2_in_axes3_x = m->prrr_platform_joint_offset_x[i] + v->prrr_d_3_in_axes3_x;
     /* (prrr-w_2) reciprocal vector 1 */
     v->prrr_w_2_t = v->prrr_c_2*v->prrr_s_3_t - v->prrr_c_3*v->prrr_s_2;
     v->prrr_e_1_in_axes3_y = v->prrr_c_2*v->prrr_c_3 + v->prrr_s_2*v->prrr_s_3_t;
@@ -1598,9 +1608,10 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real prrr_yd_1 = V[3*w + j];
     const real prrr_S_dot_rest_x = prrr_S_dot_x - m->prrr_base_frame_xy[i]*prrr_yd_1;
     const real prrr_S_dot_rest_y = prrr_S_dot_y - m->prrr_base_frame_yy[i]*prrr_yd_1;
+    const real prrr_S_dot_rest_in_axes3_x = v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_y;
     /* (prrr-qd_2) rate of joint 2 */
-    v->prrr_qd_2 = -v->inv_prrr_r_2_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
+    v->prrr_qd_2 = -v->inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x;
     /* (prrr-qd_3) rate of joint 3 */
     v->prrr_qd_3 = m->prrr_w_3_in_axes3_y[i]*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
         v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - v->prrr_qd_2*v->prrr_r_2_in_axes3_x);
@@ -1614,9 +1625,9 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     v->prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
     v->prrr_u_1_t = omega_z*prrr_S_dot_t;
     /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*m->prrr_joint3_offset_x[i]*v->prrr_s_3_t;
-    v->prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v->prrr_c_3*m->prrr_joint3_offset_x[i] -
-        prrr_W_3_t*m->prrr_platform_joint_offset_x[i];
+    v->prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*v->prrr_qd_2;
+    v->prrr_bias_in_axes3_x = -v->prrr_d_3_in_axes3_x*v->prrr_qd_2*v->prrr_qd_2 -
+        prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*m->prrr_platform_joint_offset_x[i];
     /* (prrr-f_2) inertia force of link 2 less its weight */
     v->prrr_f_2_t = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i];
     v->prrr_f_2_t_2 = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_y[i];
@@ -1699,8 +1710,8 @@ INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
     const real prrr_Q_t_4 = v->axis_y_prrr_axes3_x*prrr_Q_t_2 -
         v->axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
     v->prrr_Q_xx = -m->prrr_d_c_in_axes3_yy[i] - 2*v->axis_x_prrr_axes3_x*prrr_Q_t_3;
-    v->prrr_Q_xy = v->axis_x_prrr_axes3_x*prrr_Q_t_4 + v->axis_y_prrr_axes3_x*prrr_Q_t_3;
     v->prrr_Q_yy = -m->prrr_d_c_in_axes3_yy[i] - 2*v->axis_y_prrr_axes3_x*prrr_Q_t_4;
+    v->prrr_Q_xy = v->axis_x_prrr_axes3_x*prrr_Q_t_4 + v->axis_y_prrr_axes3_x*prrr_Q_t_3;
     /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
        extra degree of freedom of joint 1 */
     const real prrr_dy_1_P_1_t =
@@ -1834,14 +1845,14 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
 }
 
 typedef struct {
-    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
-        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
-        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y,
-        rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t,
-        rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx,
-        rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
+        axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
+        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
+        rrr_a_p_y, rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_t, rrr_bias_in_axes2_x,
+        rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
+        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1883,21 +1894,20 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
     v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
@@ -1930,31 +1940,30 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (rrr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
-    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_4;
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
-        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = v->rrr_qd_1_t*v->rrr_qd_1_t;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
-    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1972,7 +1981,7 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
     /* (rrr-qdd_1) acceleration of joint 1 */
     v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-qdd_2) acceleration of joint 2 */
@@ -2008,8 +2017,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
@@ -2027,7 +2036,7 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y + v->rrr_bias_t;
     /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
     const real rrr_B_1_o_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
     /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
@@ -2097,11 +2106,7 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_G_in_axes2_y;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2110,6 +2115,33 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[3*w + k] = v->h_star_y;
 }
 
+INLINE void any_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[(2 + i)*w + k] = o[0*count + at];
+    H[(NU + 2 + i)*w + k] = o[1*count + at];
+    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2234,17 +2266,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[(2 + i)*w + k] = o[0*count + at];
-    H[(NU + 2 + i)*w + k] = o[1*count + at];
-    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
@@ -2299,12 +2320,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
-    real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[7] CLEARED, sums[9] CLEARED;
+    real terms_prrr[9*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[16*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         dynamics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
     }
@@ -2318,7 +2339,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2338,7 +2359,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
@@ -2355,7 +2376,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2364,15 +2385,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
-}
-
 INLINE void M_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2442,12 +2454,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
@@ -2484,11 +2490,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
-    real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] CLEARED, sums[6] CLEARED;
+    real terms_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[10*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         M_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
     }
@@ -2502,7 +2508,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2520,7 +2526,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
@@ -2536,7 +2542,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2545,13 +2551,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
@@ -2614,12 +2613,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
     /* (Z_t) */
@@ -2643,11 +2636,11 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[4*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         Z_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, terms_prrr, o_prrr);
     }
@@ -2661,7 +2654,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2680,7 +2673,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2697,7 +2690,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2706,13 +2699,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2763,25 +2749,14 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[(2 + i)*w + k] = o[0*count + at];
-    H[(NU + 2 + i)*w + k] = o[1*count + at];
-    H[(2*NU + 2 + i)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
-    real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_prrr[8*LEGS(LEGS_OF_prrr)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         H_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
@@ -2792,7 +2767,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -2805,7 +2780,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2820,20 +2795,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, i, k, k, LANES, o_rrr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2989,17 +2956,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[8*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
-        required_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, V, A, terms_prrr, o_prrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prrr); i += BESIDE(LEGS_OF_prrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prrr); ++k) {
+            required_legs_prrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prrr), 0, s, X, V, A,
+                terms_prrr, o_prrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         required_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, required, H, t);
@@ -3028,7 +3001,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -3054,14 +3027,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, real *o)
 {
@@ -3103,7 +3068,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -3125,11 +3090,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
-    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         inverse_kinematics_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, o_prrr);
     }
@@ -3152,7 +3117,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3173,14 +3138,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3241,11 +3198,11 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] = {0};
-    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         joint_rates_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, o_prrr);
     }
@@ -3268,7 +3225,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3289,14 +3246,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3361,11 +3310,11 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] = {0};
-    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
         joint_accelerations_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
     }
@@ -3388,7 +3337,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3409,13 +3358,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3500,18 +3442,22 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
-    real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 12);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
-        legs_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prrr); i += BESIDE(LEGS_OF_prrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prrr); ++k) {
+            legs_legs_prrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prrr), s, X, V, A, o_prrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         legs_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, leg_force, actuator, t);
@@ -3522,14 +3468,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3567,13 +3505,6 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
     o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
 }
 
-INLINE void potential_place_prrr(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -3583,20 +3514,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3612,25 +3537,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[2] = {0};
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED, sums[2] CLEARED;
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prrr); ++k) {
-        potential_legs_prrr(m, 1, k, 0, k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr, o_prrr);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prrr); i += BESIDE(LEGS_OF_prrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prrr); ++k) {
+            potential_legs_prrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prrr), 0, s, X, terms_prrr,
+                o_prrr);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
-        potential_place_prrr(0, i, LEGS(LEGS_OF_prrr), o_prrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_prrr), o_prrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -3766,9 +3697,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3799,7 +3730,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int planar_redundant_M(const prepared *m, const real *X, real *M_out)
 {
-    real M[NV*NV] = {0};
+    real M[NV*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3824,7 +3755,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 
 int planar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    real Z[NV] = {0};
+    real Z[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3850,7 +3781,7 @@ INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out
 
 int planar_redundant_H(const prepared *m, const real *X, real *H_out)
 {
-    real H[NV*NU] = {0};
+    real H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3875,7 +3806,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 
 int planar_redundant_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    real q[NJ] = {0};
+    real q[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3900,7 +3831,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
 
 int planar_redundant_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd[NJ] = {0};
+    real qd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3928,7 +3859,7 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
 int planar_redundant_joint_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd[NJ] = {0};
+    real qdd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3957,7 +3888,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int planar_redundant_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4072,8 +4003,8 @@ int planar_redundant_inverse_dynamics(const prepared *m, const real *X, const re
     *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[4] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
-        {0}, work[NV*PADDED(NV)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, extend_1[4] CLEARED, subtract_1[NV] CLEARED,
+        unsure_tau[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4127,8 +4058,8 @@ int planar_redundant_forward_dynamics(const prepared *m, const real *X, const re
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[4] = {0}, add_1[NV]
-        = {0}, subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, extend_1[4] CLEARED,
+        add_1[NV] CLEARED, subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4203,7 +4134,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[12] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[12] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4220,7 +4151,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
 int planar_redundant_energy(const prepared *m, const real *X, const real *V, real *kinetic_out,
     real *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4241,8 +4172,8 @@ int planar_redundant_condition(const prepared *m, const real *X, real *sigma_out
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4273,9 +4204,9 @@ int planar_redundant_manipulability(const prepared *m, const real *X, real *meas
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4307,9 +4238,9 @@ int planar_redundant_singularity_distance(const prepared *m, const real *X, real
     real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4341,8 +4272,8 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
     *residual_out)
 {
     static const size_t places_residual[] = {1, 2, 3};
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] = {0}, residual[NU] =
-        {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] CLEARED, residual[NU]
+        CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4360,7 +4291,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real slope[NV*NU] = {0};
+    real slope[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4433,7 +4364,7 @@ int planar_redundant_dissipation(const prepared *m, const real *X, const real *V
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4446,7 +4377,7 @@ int planar_redundant_dissipation(const prepared *m, const real *X, const real *V
 
 int planar_redundant_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4458,7 +4389,7 @@ int planar_redundant_momentum(const prepared *m, const real *X, const real *V, r
 int planar_redundant_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4473,7 +4404,7 @@ int planar_redundant_joint_margins(const prepared *m, const real *X, real *margi
 
 int planar_redundant_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4487,7 +4418,7 @@ int planar_redundant_within_limits(const prepared *m, const real *X, real *withi
 
 int planar_redundant_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4498,7 +4429,7 @@ int planar_redundant_actuator_positions(const prepared *m, const real *X, real *
 
 int planar_redundant_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4510,7 +4441,7 @@ int planar_redundant_actuator_rates(const prepared *m, const real *X, const real
 int planar_redundant_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4522,7 +4453,7 @@ int planar_redundant_actuator_accelerations(const prepared *m, const real *X, co
 int planar_redundant_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4545,7 +4476,7 @@ int planar_redundant_rotation(const real *X, real *R_out)
 
 int planar_redundant_pose(const real *t, const real *R, real *X_out)
 {
-    real angle_of_rotation_1[1] = {0}, join_1[3] = {0}, X[NQ] = {0};
+    real angle_of_rotation_1[1] = {0}, join_1[3] = {0}, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(2, t, 4, R, why.invalid);
@@ -4568,7 +4499,7 @@ int planar_redundant_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4581,7 +4512,7 @@ int planar_redundant_retract(const real *X, const real *step, real *X_moved_out)
 int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4597,7 +4528,7 @@ int planar_redundant_difference(const real *X0, const real *X1, real *step_out)
 
 int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

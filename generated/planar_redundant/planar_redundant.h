@@ -172,13 +172,13 @@ extern const char *const planar_redundant_ACTUATOR_NAMES[PLANAR_REDUNDANT_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_redundant_prepare(const planar_redundant_params *params, planar_redundant_model *model);
 
-/* Inertia matrix M. 246 mul, 170 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 234 mul, 164 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_redundant_M(const planar_redundant_model *model, const planar_redundant_real *X,
     planar_redundant_real *M);
 size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 312 mul, 196 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 298 mul, 190 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_redundant_Z(const planar_redundant_model *model, const planar_redundant_real *X, const
     planar_redundant_real *V, planar_redundant_real *Z);
@@ -186,7 +186,7 @@ size_t planar_redundant_Z_batch(const planar_redundant_model *model, size_t n, c
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *Z, int
     *status);
 
-/* Force transformation H: actuators to task space. 142 mul, 70 add, 6 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 133 mul, 64 add, 6 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int planar_redundant_H(const planar_redundant_model *model, const planar_redundant_real *X,
     planar_redundant_real *H);
@@ -200,7 +200,7 @@ int planar_redundant_inverse_kinematics(const planar_redundant_model *model, con
 size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, planar_redundant_real *q, int *status);
 
-/* Rates of all joints. 164 mul, 87 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 152 mul, 81 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int planar_redundant_joint_rates(const planar_redundant_model *model, const planar_redundant_real
     *X, const planar_redundant_real *V, planar_redundant_real *rates);
@@ -208,7 +208,7 @@ size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, s
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
     *status);
 
-/* Accelerations of all joints. 220 mul, 122 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 202 mul, 116 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_redundant_joint_accelerations(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
@@ -217,7 +217,7 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, planar_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 431 mul, 297 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 417 mul, 291 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
     const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
@@ -226,7 +226,7 @@ size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *M,
     planar_redundant_real *Z, planar_redundant_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 341 mul, 221 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 327 mul, 215 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_redundant_inverse_dynamics(const planar_redundant_model *model, const
@@ -236,7 +236,7 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, const planar_redundant_real *wrench, planar_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 431 mul, 297 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 417 mul, 291 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_redundant_forward_dynamics(const planar_redundant_model *model, const
@@ -257,7 +257,7 @@ size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model
     *A, const planar_redundant_real *wrench, planar_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 309 mul, 187 add, 6 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 294 mul, 181 add, 6 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_redundant_leg_reactions(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
@@ -278,7 +278,7 @@ size_t planar_redundant_energy_batch(const planar_redundant_model *model, size_t
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 147 mul, 80 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (4), legs (3). */
 int planar_redundant_condition(const planar_redundant_model *model, const planar_redundant_real
     *X, planar_redundant_real *sigma, planar_redundant_real *legs);
@@ -287,7 +287,7 @@ size_t planar_redundant_condition_batch(const planar_redundant_model *model, siz
     *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values
+   the least over the largest of them. 147 mul, 80 add, 6 div, 7 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int planar_redundant_manipulability(const planar_redundant_model *model, const
     planar_redundant_real *X, planar_redundant_real *measure, planar_redundant_real *isotropy);
@@ -295,8 +295,8 @@ size_t planar_redundant_manipulability_batch(const planar_redundant_model *model
     planar_redundant_real *X, planar_redundant_real *measure, planar_redundant_real *isotropy, int
     *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 156
-   mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 147
+   mul, 80 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int planar_redundant_singularity_distance(const planar_redundant_model *model, const
     planar_redundant_real *X, planar_redundant_real *actuators, planar_redundant_real *legs);
@@ -321,7 +321,7 @@ size_t planar_redundant_dissipation_batch(const planar_redundant_model *model, s
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *dissipation,
     int *status);
 
-/* Generalised momentum M V. 246 mul, 170 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 234 mul, 164 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int planar_redundant_momentum(const planar_redundant_model *model, const planar_redundant_real *X,
     const planar_redundant_real *V, planar_redundant_real *momentum);
@@ -350,7 +350,7 @@ int planar_redundant_actuator_positions(const planar_redundant_model *model, con
 size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, planar_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 164 mul, 87 add, 6 div, 3 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 152 mul, 81 add, 6 div, 3 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int planar_redundant_actuator_rates(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates);
@@ -358,7 +358,7 @@ size_t planar_redundant_actuator_rates_batch(const planar_redundant_model *model
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
     *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 220 mul, 122 add, 6 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 202 mul, 116 add, 6 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int planar_redundant_actuator_accelerations(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,

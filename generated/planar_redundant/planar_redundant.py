@@ -2005,7 +2005,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 431 mul, 297 add, 6 div, 3 sqrt, 0 trig
+# dynamics: 417 mul, 291 add, 6 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2112,10 +2112,9 @@ def _run_dynamics(m, X, V):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -2134,11 +2133,11 @@ def _run_dynamics(m, X, V):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
@@ -2156,10 +2155,10 @@ def _run_dynamics(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
         prrr_bias_in_axes3_x = (
-        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x
+        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
@@ -2270,8 +2269,8 @@ def _run_dynamics(m, X, V):
         prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 + axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy
         prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 - axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy
         prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2.0*axis_x_prrr_axes3_x*prrr_Q_t_3
-        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
         prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
+        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
         # (prrr-U) velocity and gravity terms of the leg force
         prrr_U_x = (
         -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y
@@ -2395,57 +2394,54 @@ def _run_dynamics(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_o_in_axes2_y = rrr_bias_t + rrr_u_1_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -2509,8 +2505,8 @@ def _run_dynamics(m, X, V):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
         rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2580,7 +2576,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 246 mul, 170 add, 6 div, 3 sqrt, 0 trig
+# M: 234 mul, 164 add, 6 div, 3 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2654,10 +2650,9 @@ def _run_M(m, X):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -2717,8 +2712,8 @@ def _run_M(m, X):
         prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 + axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy
         prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 - axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy
         prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2.0*axis_x_prrr_axes3_x*prrr_Q_t_3
-        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
         prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
+        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_dy_1_P_1_t = (
         inv_prrr_r_2_in_axes3_y*prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x -
@@ -2808,19 +2803,19 @@ def _run_M(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2848,8 +2843,8 @@ def _run_M(m, X):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2892,7 +2887,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 312 mul, 196 add, 6 div, 3 sqrt, 0 trig
+# Z: 298 mul, 190 add, 6 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2989,10 +2984,9 @@ def _run_Z(m, X, V):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -3006,11 +3000,11 @@ def _run_Z(m, X, V):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
@@ -3028,10 +3022,10 @@ def _run_Z(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
         prrr_bias_in_axes3_x = (
-        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x
+        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
@@ -3158,53 +3152,50 @@ def _run_Z(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_o_in_axes2_y = rrr_bias_t + rrr_u_1_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
         rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
@@ -3271,7 +3262,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 142 mul, 70 add, 6 div, 3 sqrt, 0 trig
+# H: 133 mul, 64 add, 6 div, 3 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -3336,9 +3327,7 @@ def _run_H(m, X):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -3402,18 +3391,17 @@ def _run_H(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
@@ -3431,7 +3419,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 341 mul, 221 add, 6 div, 3 sqrt, 0 trig
+# required: 327 mul, 215 add, 6 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3538,10 +3526,9 @@ def _run_required(m, X, V, A):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -3558,11 +3545,11 @@ def _run_required(m, X, V, A):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
@@ -3590,10 +3577,10 @@ def _run_required(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
         prrr_bias_in_axes3_x = (
-        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x
+        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
@@ -3728,45 +3715,41 @@ def _run_required(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -3776,13 +3759,14 @@ def _run_required(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -3966,11 +3950,11 @@ def _run_inverse_kinematics(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
+        rrr_q_2 = atan2(-rrr_s_2_t, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3979,7 +3963,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 164 mul, 87 add, 6 div, 3 sqrt, 0 trig
+# joint_rates: 152 mul, 81 add, 6 div, 3 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -4058,10 +4042,9 @@ def _run_joint_rates(m, X, V):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -4075,11 +4058,11 @@ def _run_joint_rates(m, X, V):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
@@ -4131,29 +4114,27 @@ def _run_joint_rates(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
@@ -4170,7 +4151,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 220 mul, 122 add, 6 div, 3 sqrt, 0 trig
+# joint_accelerations: 202 mul, 116 add, 6 div, 3 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4257,10 +4238,9 @@ def _run_joint_accelerations(m, X, V, A):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -4274,22 +4254,18 @@ def _run_joint_accelerations(m, X, V, A):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
             axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
-        # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
         prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
-        # (prrr-W_3) centripetal tensor of link 3
-        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
         prrr_u_1_x = -omega_z*prrr_S_dot_t_2
         prrr_u_1_t = omega_z*prrr_S_dot_t
@@ -4306,10 +4282,10 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
         prrr_bias_in_axes3_x = (
-        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x
+        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
@@ -4368,43 +4344,37 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -4414,13 +4384,14 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4436,7 +4407,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig
+# legs: 294 mul, 181 add, 6 div, 3 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4527,10 +4498,9 @@ def _run_legs(m, X, V, A):
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_d_3_in_axes3_x = prrr_c_3*prrr_joint3_offset_x
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes3_x = prrr_d_3_in_axes3_x + prrr_platform_joint_offset_x
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -4546,18 +4516,16 @@ def _run_legs(m, X, V, A):
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = (
-        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
+        prrr_S_dot_rest_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
+        # (prrr-qd_2) rate of joint 2
+        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
             axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
-        # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
         # (prrr-omega_3) angular velocity of link 3
         prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
         # (prrr-W_3) centripetal tensor of link 3
@@ -4578,10 +4546,10 @@ def _run_legs(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
         prrr_bias_in_axes3_x = (
-        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x
+        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
@@ -4689,45 +4657,41 @@ def _run_legs(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1_t = (
-        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
             rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -4737,13 +4701,14 @@ def _run_legs(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
         rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
@@ -4932,8 +4897,8 @@ def _run_potential(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -4941,10 +4906,10 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_potential_t_3 = (
         rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
-            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
+            rrr_h_2_in_spec2_y*rrr_s_2_t + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1)) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1) - rrr_h_2_in_spec2_x*rrr_s_2_t)
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4956,7 +4921,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 156 mul, 86 add, 6 div, 7 sqrt, 0 trig
+# condition: 147 mul, 80 add, 6 div, 7 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -5032,9 +4997,7 @@ def _run_condition(m, X):
         inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
-        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        prrr_r_2_in_axes3_y = prrr_joint3_offset_x*prrr_s_3_t
         # (prrr-w_2) reciprocal vector 1
         prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
@@ -5116,18 +5079,17 @@ def _run_condition(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y

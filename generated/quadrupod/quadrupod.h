@@ -153,7 +153,7 @@ typedef struct {
             tube_potential_t_3[1];
     quadrupod_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, m_star;
 } quadrupod_model;
@@ -172,12 +172,12 @@ extern const char *const quadrupod_ACTUATOR_NAMES[QUADRUPOD_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model);
 
-/* Inertia matrix M. 1321 mul, 939 add, 17 div, 16 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 960 mul, 718 add, 13 div, 11 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int quadrupod_M(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *M);
 size_t quadrupod_M_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1255 mul, 895 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1038 mul, 757 add, 14 div, 11 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int quadrupod_Z(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real *V,
     quadrupod_real *Z);
@@ -203,7 +203,7 @@ int quadrupod_constraints(const quadrupod_model *model, const quadrupod_real *X,
 size_t quadrupod_constraints_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, quadrupod_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 397 mul, 240 add, 9 div, 8 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 261 mul, 155 add, 5 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int quadrupod_constraint_bias(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *bias);
@@ -217,14 +217,14 @@ int quadrupod_inverse_kinematics(const quadrupod_model *model, const quadrupod_r
 size_t quadrupod_inverse_kinematics_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *q, int *status);
 
-/* Rates of all joints. 552 mul, 344 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 408 mul, 259 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int quadrupod_joint_rates(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *rates);
 size_t quadrupod_joint_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of all joints. 822 mul, 526 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 626 mul, 404 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int quadrupod_joint_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);
@@ -232,15 +232,15 @@ size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2191 mul, 1607 add, 17 div, 16 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1739 mul, 1316 add, 14 div, 11 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
 size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1373 mul, 1009
-   add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1158 mul, 865
+   add, 14 div, 11 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_inverse_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real *tau,
@@ -250,7 +250,7 @@ size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, 
     *wrench, quadrupod_real *tau, quadrupod_real *lambda, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1373 mul, 1009 add, 17 div, 16 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1158 mul, 865 add, 14 div, 11 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU), lambda (NC).
    */
 int quadrupod_inverse_dynamics_weighted(const quadrupod_model *model, const quadrupod_real *X,
@@ -261,7 +261,7 @@ size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, s
     *wrench, const quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2191 mul, 1607 add, 17 div, 16
+/* Acceleration A under the actuator forces tau and the wrench. 1739 mul, 1316 add, 14 div, 11
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int quadrupod_forward_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -282,7 +282,7 @@ size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_
     *wrench, quadrupod_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 1232 mul, 883 add, 17 div, 16 sqrt, 0 trig; inverse
+   give the forces of inverse_dynamics. 1026 mul, 745 add, 14 div, 11 sqrt, 0 trig; inverse
    dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (5 x 6). */
 int quadrupod_leg_reactions(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
@@ -301,7 +301,7 @@ size_t quadrupod_energy_batch(const quadrupod_model *model, size_t n, const quad
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (4), legs (5). */
 int quadrupod_condition(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *sigma, quadrupod_real *legs);
@@ -310,8 +310,8 @@ size_t quadrupod_condition_batch(const quadrupod_model *model, size_t n, const q
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ).
-   Out: sigma (6), legs (5). */
+   the legs. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (5). */
 int quadrupod_condition_constrained(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *sigma, quadrupod_real *legs);
 size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_t n, const
@@ -319,15 +319,15 @@ size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int quadrupod_manipulability(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *measure, quadrupod_real *isotropy);
 size_t quadrupod_manipulability_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, quadrupod_real *measure, quadrupod_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 470
-   mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 370
+   mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int quadrupod_singularity_distance(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *actuators, quadrupod_real *legs);
@@ -337,9 +337,9 @@ size_t quadrupod_singularity_distance_batch(const quadrupod_model *model, size_t
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1373 mul, 1009 add, 17 div, 16
-   sqrt, 0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench
-   (NW, or NULL), reference (NU, or NULL). Out: tau (NU), lambda (NC). */
+   negative forces: tau_max = -t keeps tensions of t at least. 1158 mul, 865 add, 14 div, 11 sqrt,
+   0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
+   or NULL), reference (NU, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_force_distribution(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *tau_min, const
     quadrupod_real *tau_max, const quadrupod_real *wrench, const quadrupod_real *reference,
@@ -371,7 +371,7 @@ int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X,
 size_t quadrupod_dissipation_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1321 mul, 939 add, 17 div, 16 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 960 mul, 718 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int quadrupod_momentum(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *momentum);
@@ -400,14 +400,14 @@ int quadrupod_actuator_positions(const quadrupod_model *model, const quadrupod_r
 size_t quadrupod_actuator_positions_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 552 mul, 344 add, 17 div, 16 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 408 mul, 259 add, 13 div, 11 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int quadrupod_actuator_rates(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *rates);
 size_t quadrupod_actuator_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 822 mul, 526 add, 17 div, 16 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 626 mul, 404 add, 13 div, 11 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int quadrupod_actuator_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);

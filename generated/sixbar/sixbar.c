@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1427,14 +1438,14 @@ INLINE void stage_V_X(values *v)
 }
 
 typedef struct {
-    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
-        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x,
-        rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
-        rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x, rrr_a_p_y, rrr_qd_1,
-        rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x, rrr_c_t, rrr_c_t_2,
-        rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_xy,
-        rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y, rrr_Z_a_t,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
+        axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
+        rrr_r_1_in_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
+        rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
+        rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
+        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1476,21 +1487,20 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
     v->rrr_c_2 = m->inv_rrr_size_t_2[i]*m->rrr_platform_joint_offset_x[i]*rrr_x_2_in_axes1_x;
     /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_s_2 =
-        -m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    v->rrr_s_2_t =
+        m->inv_rrr_size_t[i]*m->inv_rrr_size_t_2[i]*m->rrr_joint2_offset_x[i]*m->rrr_platform_joint_offset_x[i]*rrr_root_1;
+    /* (rrr-S_dot) velocity of the connection point */
+    const real rrr_S_dot_t = v->rrr_c_1*v->rrr_s_2_t - v->rrr_c_2*v->rrr_s_1;
+    const real rrr_S_dot_t_2 = v->rrr_c_1*v->rrr_c_2 + v->rrr_s_1*v->rrr_s_2_t;
+    v->axis_y_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_xx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_xy[i];
+    v->axis_x_rrr_axes2_x = rrr_S_dot_t*m->rrr_base_frame_yx[i] +
+        rrr_S_dot_t_2*m->rrr_base_frame_yy[i];
     /* (rrr-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_r_1_in_axes1_y = m->rrr_platform_joint_offset_x[i]*v->rrr_s_2;
-    const real rrr_r_1_in_axes1_x = m->rrr_joint2_offset_x[i] +
-        v->rrr_c_2*m->rrr_platform_joint_offset_x[i];
-    v->rrr_r_1_in_axes2_x = v->rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*v->rrr_s_2;
-    v->rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*v->rrr_s_2;
+    v->rrr_d_2_in_axes2_x = v->rrr_c_2*m->rrr_joint2_offset_x[i];
+    v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
+    v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    const real rrr_w_1_t = v->rrr_c_2*v->rrr_s_1 + v->rrr_c_1*v->rrr_s_2;
-    const real rrr_w_1_t_2 = v->rrr_c_1*v->rrr_c_2 - v->rrr_s_1*v->rrr_s_2;
-    v->axis_y_rrr_axes2_x = m->rrr_base_frame_xy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_xx[i]*rrr_w_1_t;
-    v->axis_x_rrr_axes2_x = m->rrr_base_frame_yy[i]*rrr_w_1_t_2 -
-        m->rrr_base_frame_yx[i]*rrr_w_1_t;
     v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
     v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
     v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
@@ -1523,31 +1533,30 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
 {
     /* (rrr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
-    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real rrr_S_dot_t_3 = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_4 = omega_z*v->rrr_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_2;
+    const real rrr_S_dot_y = t_dot_y + rrr_S_dot_t_4;
+    const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
-        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    v->rrr_qd_1 = rrr_S_dot_in_axes2_x*v->rrr_w_1_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
         v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
-    /* (rrr-W_1) centripetal tensor of link 1 */
-    const real rrr_W_1_t = v->rrr_qd_1*v->rrr_qd_1;
     /* (rrr-omega_2) angular velocity of link 2 */
     const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
-    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-    v->rrr_u_1_t = omega_z*rrr_S_dot_t;
+    v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
+    v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_W_1_t*m->rrr_joint2_offset_x[i]*v->rrr_s_2;
-    v->rrr_bias_in_axes2_x = -rrr_W_1_t*v->rrr_c_2*m->rrr_joint2_offset_x[i] -
-        rrr_W_2_t*m->rrr_platform_joint_offset_x[i];
+    v->rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*v->rrr_qd_1;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1*v->rrr_qd_1 -
+        rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_c_t = rrr_W_2_t*m->rrr_h_2_in_spec2_x[i];
@@ -1602,8 +1611,8 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
     const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
         v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
     v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
     v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
@@ -1692,17 +1701,18 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 
 typedef struct {
     real rrr_leg1_q_x, rrr_leg1_q_y, rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1,
-        rrr_leg1_c_2, rrr_leg1_s_2, rrr_leg1_r_1_in_axes2_x, rrr_leg1_r_1_in_axes2_y,
-        axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x, rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x,
-        rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y,
-        rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y,
-        rrr_leg1_mu_1_t_3, rrr_leg1_H_a_1_z, rrr_leg1_H_a_2_z, rrr_leg1_a_p_x, rrr_leg1_a_p_y,
-        rrr_leg1_qd_1, rrr_leg1_qd_2, rrr_leg1_u_1_x, rrr_leg1_u_1_t, rrr_leg1_bias_in_axes2_y,
-        rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_S_ddot_in_axes2_x,
-        rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_xy,
-        rrr_leg1_Q_yy, rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t, rrr_leg1_U_x,
-        rrr_leg1_U_y, rrr_leg1_Z_a_t, rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y,
-        rrr_leg1_c_in_axes2_x, rrr_leg1_c_in_axes2_y;
+        rrr_leg1_c_2, rrr_leg1_s_2_t, axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x,
+        rrr_leg1_d_2_in_axes2_x, rrr_leg1_r_1_in_axes2_y, rrr_leg1_r_1_in_axes2_x,
+        rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x, rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x,
+        rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y,
+        rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y, rrr_leg1_mu_1_t_3, rrr_leg1_H_a_1_z,
+        rrr_leg1_H_a_2_z, rrr_leg1_a_p_x, rrr_leg1_a_p_y, rrr_leg1_qd_1, rrr_leg1_qd_2,
+        rrr_leg1_u_1_x, rrr_leg1_u_1_t, rrr_leg1_bias_in_axes2_y, rrr_leg1_bias_in_axes2_x,
+        rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y,
+        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_yy, rrr_leg1_Q_xy,
+        rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t, rrr_leg1_U_x, rrr_leg1_U_y,
+        rrr_leg1_Z_a_t, rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
+        rrr_leg1_c_in_axes2_y;
 } values_rrr_leg1;
 
 INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1753,26 +1763,23 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->rrr_leg1_c_2 =
         m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_x_2_in_axes1_x;
     /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rrr_leg1_s_2 =
-        -m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
+    v->rrr_leg1_s_2_t =
+        m->inv_rrr_leg1_size_t[i]*m->inv_rrr_leg1_size_t_2[i]*m->rrr_leg1_joint2_offset_x[i]*m->rrr_leg1_platform_joint_offset_x[i]*rrr_leg1_root_1;
+    /* (rrr_leg1-S_dot) velocity of the connection point */
+    const real rrr_leg1_S_dot_t = v->rrr_leg1_c_1*v->rrr_leg1_s_2_t -
+        v->rrr_leg1_c_2*v->rrr_leg1_s_1;
+    const real rrr_leg1_S_dot_t_2 = v->rrr_leg1_c_1*v->rrr_leg1_c_2 +
+        v->rrr_leg1_s_1*v->rrr_leg1_s_2_t;
+    v->axis_y_rrr_leg1_axes2_x = rrr_leg1_S_dot_t*m->rrr_leg1_base_frame_xx[i] +
+        rrr_leg1_S_dot_t_2*m->rrr_leg1_base_frame_xy[i];
+    v->axis_x_rrr_leg1_axes2_x = rrr_leg1_S_dot_t*m->rrr_leg1_base_frame_yx[i] +
+        rrr_leg1_S_dot_t_2*m->rrr_leg1_base_frame_yy[i];
     /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-    const real rrr_leg1_r_1_in_axes1_y =
-        m->rrr_leg1_platform_joint_offset_x[i]*v->rrr_leg1_s_2;
-    const real rrr_leg1_r_1_in_axes1_x = m->rrr_leg1_joint2_offset_x[i] +
-        v->rrr_leg1_c_2*m->rrr_leg1_platform_joint_offset_x[i];
-    v->rrr_leg1_r_1_in_axes2_x = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-        rrr_leg1_r_1_in_axes1_y*v->rrr_leg1_s_2;
-    v->rrr_leg1_r_1_in_axes2_y = v->rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-        rrr_leg1_r_1_in_axes1_x*v->rrr_leg1_s_2;
+    v->rrr_leg1_d_2_in_axes2_x = v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i];
+    v->rrr_leg1_r_1_in_axes2_y = m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2_t;
+    v->rrr_leg1_r_1_in_axes2_x = m->rrr_leg1_platform_joint_offset_x[i] +
+        v->rrr_leg1_d_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    const real rrr_leg1_w_1_t = v->rrr_leg1_c_2*v->rrr_leg1_s_1 +
-        v->rrr_leg1_c_1*v->rrr_leg1_s_2;
-    const real rrr_leg1_w_1_t_2 = v->rrr_leg1_c_1*v->rrr_leg1_c_2 -
-        v->rrr_leg1_s_1*v->rrr_leg1_s_2;
-    v->axis_y_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_xy[i]*rrr_leg1_w_1_t_2 -
-        m->rrr_leg1_base_frame_xx[i]*rrr_leg1_w_1_t;
-    v->axis_x_rrr_leg1_axes2_x = m->rrr_leg1_base_frame_yy[i]*rrr_leg1_w_1_t_2 -
-        m->rrr_leg1_base_frame_yx[i]*rrr_leg1_w_1_t;
     v->rrr_leg1_w_1_in_axes2_x = -1/v->rrr_leg1_r_1_in_axes2_y;
     v->rrr_leg1_w_1_x = v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
     v->rrr_leg1_w_1_y = -v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
@@ -1819,35 +1826,33 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
 {
     /* (rrr_leg1-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    const real rrr_leg1_S_dot_t = omega_z*v->rrr_leg1_q_y;
-    const real rrr_leg1_S_dot_t_2 = omega_z*v->rrr_leg1_q_x;
+    const real rrr_leg1_S_dot_t_3 = omega_z*v->rrr_leg1_q_y;
+    const real rrr_leg1_S_dot_t_4 = omega_z*v->rrr_leg1_q_x;
     const real t_dot_x = V[0*w + j];
-    const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
+    const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3;
     const real t_dot_y = V[1*w + j];
-    const real rrr_leg1_S_dot_y = t_dot_y + rrr_leg1_S_dot_t_2;
+    const real rrr_leg1_S_dot_y = t_dot_y + rrr_leg1_S_dot_t_4;
+    const real rrr_leg1_S_dot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y;
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    v->rrr_leg1_qd_1 = v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x
-        - v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
+    v->rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     v->rrr_leg1_qd_2 =
         m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
         v->rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
-    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-    const real rrr_leg1_W_1_t = v->rrr_leg1_qd_1*v->rrr_leg1_qd_1;
     /* (rrr_leg1-omega_2) angular velocity of link 2 */
     const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_1 + v->rrr_leg1_qd_2;
     /* (rrr_leg1-W_2) centripetal tensor of link 2 */
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-    v->rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2;
-    v->rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t;
+    v->rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4;
+    v->rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_leg1_bias_in_axes2_y =
-        rrr_leg1_W_1_t*m->rrr_leg1_joint2_offset_x[i]*v->rrr_leg1_s_2;
+    v->rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_qd_1;
     v->rrr_leg1_bias_in_axes2_x =
-        -rrr_leg1_W_1_t*v->rrr_leg1_c_2*m->rrr_leg1_joint2_offset_x[i] -
-        rrr_leg1_W_2_t*m->rrr_leg1_platform_joint_offset_x[i];
+        -v->rrr_leg1_d_2_in_axes2_x*v->rrr_leg1_qd_1*v->rrr_leg1_qd_1 -
+        rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i];
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_leg1_c_t = rrr_leg1_W_2_t*m->rrr_leg1_h_2_in_spec2_x[i];
@@ -1905,10 +1910,10 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
     v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
     v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
         2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
     /* (M_ta) coupling block of M */
     v->rrr_leg1_M_ta_t = v->rrr_leg1_Q_xy*v->rrr_leg1_q_x - v->rrr_leg1_Q_xx*v->rrr_leg1_q_y;
     v->rrr_leg1_M_ta_t_2 = v->rrr_leg1_Q_yy*v->rrr_leg1_q_x -
@@ -2011,11 +2016,7 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2024,6 +2025,48 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[3*w + k] = v->h_star_y;
 }
 
+INLINE void any_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
+    *H, status_flags *t)
+{
+    H[0*w + k] = o[0*count + at];
+    H[NU*w + k] = o[1*count + at];
+    H[2*NU*w + k] = o[2*count + at];
+    H[1*w + k] = o[3*count + at];
+    H[(NU + 1)*w + k] = o[4*count + at];
+    H[(2*NU + 1)*w + k] = o[5*count + at];
+    t->unreachable[k] += o[6*count + at];
+    t->singular[k] += o[7*count + at];
+    t->total[k] += o[8*count + at];
+}
+
+INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
+    status_flags *t)
+{
+    H[2*w + k] = o[0*count + at];
+    H[(NU + 2)*w + k] = o[1*count + at];
+    H[(2*NU + 2)*w + k] = o[2*count + at];
+    t->unreachable[k] += o[3*count + at];
+    t->singular[k] += o[4*count + at];
+    t->total[k] += o[5*count + at];
+}
+
+INLINE void any_place_rrr_leg1_2(size_t k, size_t at, size_t count, const real *o, status_flags
+    *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2079,20 +2122,6 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void dynamics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
-    real *H, status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[2*NU*w + k] = o[2*count + at];
-    H[1*w + k] = o[3*count + at];
-    H[(NU + 1)*w + k] = o[4*count + at];
-    H[(2*NU + 1)*w + k] = o[5*count + at];
-    t->unreachable[k] += o[6*count + at];
-    t->singular[k] += o[7*count + at];
-    t->total[k] += o[8*count + at];
-}
-
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2124,17 +2153,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void dynamics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    H[(2*NU + 2)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2191,11 +2209,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] = {0}, sums[9] = {0};
-    real terms_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[7] CLEARED, sums[9] CLEARED;
+    real terms_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2203,13 +2222,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        dynamics_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
+        any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        dynamics_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2228,7 +2247,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
@@ -2237,7 +2256,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+            any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2245,7 +2264,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2254,15 +2273,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->h_star_x;
-    s[3*w + k] = v->h_star_y;
-}
-
 INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2284,12 +2294,6 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void M_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2308,12 +2312,6 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void M_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2352,11 +2350,12 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] = {0}, sums[6] = {0};
-    real terms_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] CLEARED, sums[6] CLEARED;
+    real terms_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2364,13 +2363,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        M_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        M_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2388,7 +2387,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
@@ -2396,7 +2395,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2404,7 +2403,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2413,13 +2412,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_V(w, k, V, v);
@@ -2452,12 +2444,6 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void Z_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -2473,12 +2459,6 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void Z_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2504,11 +2484,12 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
@@ -2516,13 +2497,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        Z_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        Z_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -2541,7 +2522,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_rrr[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2550,7 +2531,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr_leg1(k, k, LANES, o_rrr_leg1, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2558,7 +2539,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_rrr(k, k, LANES, o_rrr, t);
+            any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2567,13 +2548,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, real *o)
 {
@@ -2597,20 +2571,6 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[0*w + k] = o[0*count + at];
-    H[NU*w + k] = o[1*count + at];
-    H[2*NU*w + k] = o[2*count + at];
-    H[1*w + k] = o[3*count + at];
-    H[(NU + 1)*w + k] = o[4*count + at];
-    H[(2*NU + 1)*w + k] = o[5*count + at];
-    t->unreachable[k] += o[6*count + at];
-    t->singular[k] += o[7*count + at];
-    t->total[k] += o[8*count + at];
-}
-
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2627,24 +2587,13 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
-INLINE void H_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
-    status_flags *t)
-{
-    H[2*w + k] = o[0*count + at];
-    H[(NU + 2)*w + k] = o[1*count + at];
-    H[(2*NU + 2)*w + k] = o[2*count + at];
-    t->unreachable[k] += o[3*count + at];
-    t->singular[k] += o[4*count + at];
-    t->total[k] += o[5*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
@@ -2652,10 +2601,10 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        H_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
+        any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        H_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
+        any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
 }
 
@@ -2667,14 +2616,14 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_rrr[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, o_rrr_leg1);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
+            any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
@@ -2682,20 +2631,12 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
+            any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2835,16 +2776,23 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] = {0}, sums[3] = {0};
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] CLEARED, sums[3] CLEARED;
+    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        required_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, A, terms_rrr_leg1, o_rrr_leg1);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            required_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, A,
+                terms_rrr_leg1, o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        required_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         required_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
@@ -2872,7 +2820,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2898,14 +2846,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
     size_t k, size_t count, const real *s, const real *X, real *o)
 {
@@ -2914,7 +2854,7 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     /* (rrr_leg1-q_1) displacement of joint 1 */
     const real rrr_leg1_q_1 = angle(v.rrr_leg1_s_1, v.rrr_leg1_c_1);
     /* (rrr_leg1-q_2) displacement of joint 2 */
-    const real rrr_leg1_q_2 = angle(v.rrr_leg1_s_2, v.rrr_leg1_c_2);
+    const real rrr_leg1_q_2 = angle(-v.rrr_leg1_s_2_t, v.rrr_leg1_c_2);
     /* (rrr_leg1-q_1) */
     o[0*count + k] = rrr_leg1_q_1;
     /* (rrr_leg1-q_2) */
@@ -2943,7 +2883,7 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     /* (rrr-q_1) displacement of joint 1 */
     const real rrr_q_1 = angle(v.rrr_s_1, v.rrr_c_1);
     /* (rrr-q_2) displacement of joint 2 */
-    const real rrr_q_2 = angle(v.rrr_s_2, v.rrr_c_2);
+    const real rrr_q_2 = angle(-v.rrr_s_2_t, v.rrr_c_2);
     /* (rrr-q_1) */
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
@@ -2965,11 +2905,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
@@ -2992,7 +2932,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3013,14 +2953,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3077,11 +3009,11 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] = {0};
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, o_rrr_leg1);
     }
@@ -3104,7 +3036,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3125,14 +3057,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X,
-    values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j,
     size_t k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3193,11 +3117,11 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
@@ -3220,7 +3144,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_rrr[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3241,13 +3165,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3337,18 +3254,23 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] = {0};
-    real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED;
+    real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    legs_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        legs_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            legs_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A,
+                o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        legs_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         legs_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg_force, actuator, t);
@@ -3359,14 +3281,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3387,25 +3301,18 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_potential_t_3 = v.rrr_leg1_g_in_axes1_x*(m->rrr_leg1_h_1_in_spec1_x[i]
         + v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_x[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t[i] +
-        m->rrr_leg1_potential_t_2[i]*v.rrr_leg1_s_1) -
-        m->rrr_leg1_h_2_in_spec2_y[i]*v.rrr_leg1_s_2) +
+        m->rrr_leg1_potential_t_2[i]*v.rrr_leg1_s_1) +
+        m->rrr_leg1_h_2_in_spec2_y[i]*v.rrr_leg1_s_2_t) +
         v.rrr_leg1_g_in_axes1_y*(m->rrr_leg1_h_1_in_spec1_y[i] +
         v.rrr_leg1_c_2*m->rrr_leg1_h_2_in_spec2_y[i] +
         m->rrr_leg1_link1_mass[i]*(v.rrr_leg1_c_1*m->rrr_leg1_potential_t_2[i] -
-        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) +
-        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2);
+        m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) -
+        m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr_leg1(size_t k, size_t at, size_t count, const real *o,
-    status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3417,20 +3324,14 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_potential_t_3 = v.rrr_g_in_axes1_x*(m->rrr_h_1_in_spec1_x[i] +
         v.rrr_c_2*m->rrr_h_2_in_spec2_x[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t[i] +
-        m->rrr_potential_t_2[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2) +
+        m->rrr_potential_t_2[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_y[i]*v.rrr_s_2_t) +
         v.rrr_g_in_axes1_y*(m->rrr_h_1_in_spec1_y[i] + v.rrr_c_2*m->rrr_h_2_in_spec2_y[i] +
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
-        m->rrr_potential_t[i]*v.rrr_s_1) + m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2);
+        m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
-}
-
-INLINE void potential_place_rrr(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3446,25 +3347,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] = {0}, sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] CLEARED, sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s);
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
-        potential_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
+    any_before_2(m, 1, 0, X, &v, s);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
+            potential_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, s, X,
+                terms_rrr_leg1, o_rrr_leg1);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
-        potential_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
+    for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
+            potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
+                o_rrr);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
-        potential_place_rrr_leg1(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
-        potential_place_rrr(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
+        any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
@@ -3603,9 +3510,10 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] = {0}, sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] CLEARED, sums[2] CLEARED;
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)]
+        CLEARED;
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
@@ -3864,7 +3772,7 @@ int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, con
     real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -3913,8 +3821,8 @@ int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, con
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3983,7 +3891,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 0, 1};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NV] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4000,7 +3908,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
 int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4021,8 +3929,8 @@ int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *le
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4052,9 +3960,9 @@ int sixbar_condition(const prepared *m, const real *X, real *sigma_out, real *le
 int sixbar_manipulability(const prepared *m, const real *X, real *measure_out, real *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4086,9 +3994,9 @@ int sixbar_singularity_distance(const prepared *m, const real *X, real *actuator
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4119,7 +4027,7 @@ int sixbar_singularity_distance(const prepared *m, const real *X, real *actuator
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, subtract_1[NU] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, subtract_1[NU] CLEARED, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4206,7 +4114,7 @@ int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *di
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4219,7 +4127,7 @@ int sixbar_dissipation(const prepared *m, const real *X, const real *V, real *di
 
 int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4231,7 +4139,7 @@ int sixbar_momentum(const prepared *m, const real *X, const real *V, real *momen
 int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4246,7 +4154,7 @@ int sixbar_joint_margins(const prepared *m, const real *X, real *margins_out)
 
 int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4260,7 +4168,7 @@ int sixbar_within_limits(const prepared *m, const real *X, real *within_out)
 
 int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4271,7 +4179,7 @@ int sixbar_actuator_positions(const prepared *m, const real *X, real *q_out)
 
 int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0};
+    real qd_of_joint_rates[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4283,7 +4191,7 @@ int sixbar_actuator_rates(const prepared *m, const real *X, const real *V, real 
 int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4295,7 +4203,7 @@ int sixbar_actuator_accelerations(const prepared *m, const real *X, const real *
 int sixbar_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4339,7 +4247,7 @@ int sixbar_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int sixbar_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4352,7 +4260,7 @@ int sixbar_retract(const real *X, const real *step, real *X_moved_out)
 int sixbar_difference(const real *X0, const real *X1, real *step_out)
 {
     static const size_t places_step[] = {2};
-    real subtract_1[NQ] = {0}, step[NV] = {0};
+    real subtract_1[NQ] CLEARED, step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4368,7 +4276,7 @@ int sixbar_difference(const real *X0, const real *X1, real *step_out)
 
 int sixbar_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real wrap_turns_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real wrap_turns_1[NQ] = {0}, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -164,19 +164,19 @@ extern const char *const sixbar_ACTUATOR_NAMES[SIXBAR_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int sixbar_prepare(const sixbar_params *params, sixbar_model *model);
 
-/* Inertia matrix M. 148 mul, 107 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 140 mul, 103 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int sixbar_M(const sixbar_model *model, const sixbar_real *X, sixbar_real *M);
 size_t sixbar_M_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *M,
     int *status);
 
-/* Velocity and gravity terms Z. 203 mul, 127 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 193 mul, 123 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int sixbar_Z(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V, sixbar_real
     *Z);
 size_t sixbar_Z_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const sixbar_real
     *V, sixbar_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 104 mul, 50 add, 4 div, 2 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 97 mul, 46 add, 4 div, 2 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int sixbar_H(const sixbar_model *model, const sixbar_real *X, sixbar_real *H);
 size_t sixbar_H_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *H,
@@ -188,28 +188,28 @@ int sixbar_inverse_kinematics(const sixbar_model *model, const sixbar_real *X, s
 size_t sixbar_inverse_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *q, int *status);
 
-/* Rates of all joints. 108 mul, 56 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 100 mul, 52 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int sixbar_joint_rates(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *rates);
 size_t sixbar_joint_rates_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *rates, int *status);
 
-/* Accelerations of all joints. 144 mul, 78 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 132 mul, 74 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int sixbar_joint_accelerations(const sixbar_model *model, const sixbar_real *X, const sixbar_real
     *V, const sixbar_real *A, sixbar_real *accelerations);
 size_t sixbar_joint_accelerations_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     const sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 271 mul, 191 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 261 mul, 187 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int sixbar_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *M, sixbar_real *Z, sixbar_real *H);
 size_t sixbar_dynamics_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *M, sixbar_real *Z, sixbar_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 228 mul, 145 add, 4 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 218 mul, 141 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int sixbar_inverse_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -218,7 +218,7 @@ size_t sixbar_inverse_dynamics_batch(const sixbar_model *model, size_t n, const 
     const sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 271 mul, 191 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 261 mul, 187 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int sixbar_forward_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -237,7 +237,7 @@ size_t sixbar_complete_acceleration_batch(const sixbar_model *model, size_t n, c
     *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 208 mul, 122 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 198 mul, 118 add, 4 div, 2 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int sixbar_leg_reactions(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     const sixbar_real *A, const sixbar_real *wrench, sixbar_real *forces);
@@ -255,7 +255,7 @@ size_t sixbar_energy_batch(const sixbar_model *model, size_t n, const sixbar_rea
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 107 mul, 57 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (2). */
 int sixbar_condition(const sixbar_model *model, const sixbar_real *X, sixbar_real *sigma,
     sixbar_real *legs);
@@ -263,15 +263,15 @@ size_t sixbar_condition_batch(const sixbar_model *model, size_t n, const sixbar_
     sixbar_real *sigma, sixbar_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values
+   the least over the largest of them. 107 mul, 57 add, 4 div, 5 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int sixbar_manipulability(const sixbar_model *model, const sixbar_real *X, sixbar_real *measure,
     sixbar_real *isotropy);
 size_t sixbar_manipulability_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *measure, sixbar_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 114
-   mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 107
+   mul, 57 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int sixbar_singularity_distance(const sixbar_model *model, const sixbar_real *X, sixbar_real
     *actuators, sixbar_real *legs);
@@ -293,7 +293,7 @@ int sixbar_dissipation(const sixbar_model *model, const sixbar_real *X, const si
 size_t sixbar_dissipation_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *dissipation, int *status);
 
-/* Generalised momentum M V. 148 mul, 107 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 140 mul, 103 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int sixbar_momentum(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *momentum);
@@ -318,14 +318,14 @@ int sixbar_actuator_positions(const sixbar_model *model, const sixbar_real *X, s
 size_t sixbar_actuator_positions_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 108 mul, 56 add, 4 div, 2 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 100 mul, 52 add, 4 div, 2 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int sixbar_actuator_rates(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *rates);
 size_t sixbar_actuator_rates_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     const sixbar_real *V, sixbar_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 144 mul, 78 add, 4 div, 2 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 132 mul, 74 add, 4 div, 2 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int sixbar_actuator_accelerations(const sixbar_model *model, const sixbar_real *X, const
     sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations);

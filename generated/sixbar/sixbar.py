@@ -1959,7 +1959,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 271 mul, 191 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 261 mul, 187 add, 4 div, 2 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2060,34 +2060,30 @@ def _run_dynamics(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
@@ -2104,24 +2100,19 @@ def _run_dynamics(m, X, V):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
         rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
-        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
         rrr_leg1_u_1_in_axes2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x + axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
@@ -2129,10 +2120,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
@@ -2218,10 +2209,10 @@ def _run_dynamics(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
         rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         rrr_leg1_Q_xy = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         # (rrr_leg1-U) velocity and gravity terms of the leg force
         rrr_leg1_U_x = (
         -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
@@ -2313,53 +2304,50 @@ def _run_dynamics(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
@@ -2427,8 +2415,8 @@ def _run_dynamics(m, X, V):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (rrr-U) velocity and gravity terms of the leg force
         rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
         rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
@@ -2498,7 +2486,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 148 mul, 107 add, 4 div, 2 sqrt, 0 trig
+# M: 140 mul, 103 add, 4 div, 2 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2575,29 +2563,23 @@ def _run_M(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -2633,10 +2615,10 @@ def _run_M(m, X):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 - axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy
         )
         rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
+        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         rrr_leg1_Q_xy = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 + axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3
         )
-        rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy - 2.0*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4
         # (M_ta) coupling block of M
         rrr_leg1_M_ta_t = rrr_leg1_Q_xy*rrr_leg1_q_x - rrr_leg1_Q_xx*rrr_leg1_q_y
         rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*rrr_leg1_q_x - rrr_leg1_Q_xy*rrr_leg1_q_y
@@ -2694,19 +2676,19 @@ def _run_M(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2734,8 +2716,8 @@ def _run_M(m, X):
         rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
         rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
-        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
         # (M_ta) coupling block of M
         rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
         rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
@@ -2778,7 +2760,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 203 mul, 127 add, 4 div, 2 sqrt, 0 trig
+# Z: 193 mul, 123 add, 4 div, 2 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2869,54 +2851,45 @@ def _run_Z(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
         rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
-        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
         rrr_leg1_u_1_in_axes2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x + axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
@@ -2924,10 +2897,10 @@ def _run_Z(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
@@ -3042,49 +3015,46 @@ def _run_Z(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
@@ -3155,7 +3125,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 104 mul, 50 add, 4 div, 2 sqrt, 0 trig
+# H: 97 mul, 46 add, 4 div, 2 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -3222,29 +3192,23 @@ def _run_H(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
@@ -3313,18 +3277,17 @@ def _run_H(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
@@ -3342,7 +3305,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 228 mul, 145 add, 4 div, 2 sqrt, 0 trig
+# required: 218 mul, 141 add, 4 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3443,34 +3406,30 @@ def _run_required(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
@@ -3487,24 +3446,19 @@ def _run_required(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
         rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
-        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
@@ -3518,10 +3472,10 @@ def _run_required(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
@@ -3646,45 +3600,41 @@ def _run_required(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -3694,9 +3644,10 @@ def _run_required(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -3838,11 +3789,11 @@ def _run_inverse_kinematics(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-q_2) displacement of joint 2
-        rrr_leg1_q_2 = atan2(rrr_leg1_s_2, rrr_leg1_c_2)
+        rrr_leg1_q_2 = atan2(-rrr_leg1_s_2_t, rrr_leg1_c_2)
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0)
@@ -3888,11 +3839,11 @@ def _run_inverse_kinematics(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-q_2) displacement of joint 2
-        rrr_q_2 = atan2(rrr_s_2, rrr_c_2)
+        rrr_q_2 = atan2(-rrr_s_2_t, rrr_c_2)
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
@@ -3901,7 +3852,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 108 mul, 56 add, 4 div, 2 sqrt, 0 trig
+# joint_rates: 100 mul, 52 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -3975,40 +3926,33 @@ def _run_joint_rates(m, X, V):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
@@ -4058,29 +4002,27 @@ def _run_joint_rates(m, X, V):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
@@ -4097,7 +4039,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 144 mul, 78 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 132 mul, 74 add, 4 div, 2 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4178,54 +4120,43 @@ def _run_joint_accelerations(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
         rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
-        # (rrr_leg1-W_2) centripetal tensor of link 2
-        rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
-        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
@@ -4239,10 +4170,10 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
@@ -4298,43 +4229,37 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -4344,9 +4269,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -4366,7 +4292,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 208 mul, 122 add, 4 div, 2 sqrt, 0 trig
+# legs: 198 mul, 118 add, 4 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4452,34 +4378,30 @@ def _run_legs(m, X, V, A):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-S_dot) velocity of the connection point
-        rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y
-        rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x
-        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t
-        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        rrr_leg1_S_dot_t_3 = omega_z*rrr_leg1_q_y
+        rrr_leg1_S_dot_t_4 = omega_z*rrr_leg1_q_x
+        rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t_3
+        rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_4 + t_dot_y
+        rrr_leg1_S_dot_in_axes2_x = (
+        axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y
+        )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
@@ -4496,24 +4418,19 @@ def _run_legs(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = (
-        rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)
-        )
+        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
             axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
         )
-        # (rrr_leg1-W_1) centripetal tensor of link 1
-        rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1
         # (rrr_leg1-omega_2) angular velocity of link 2
         rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
-        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2
-        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t
+        rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
+        rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
         # (rrr_leg1-a_p) acceleration of the connection point without its centripetal part
         rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y
         rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x
@@ -4527,10 +4444,10 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
+        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+            rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
@@ -4649,45 +4566,41 @@ def _run_legs(m, X, V, A):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_x
-        rrr_S_dot_x = t_dot_x - rrr_S_dot_t
-        rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
+        rrr_S_dot_t_3 = omega_z*rrr_q_y
+        rrr_S_dot_t_4 = omega_z*rrr_q_x
+        rrr_S_dot_x = t_dot_x - rrr_S_dot_t_3
+        rrr_S_dot_y = rrr_S_dot_t_4 + t_dot_y
+        rrr_S_dot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_d_2_in_axes2_x = rrr_c_2*rrr_joint2_offset_x
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
+        rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = (
-        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
-        )
+        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
         rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
             rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
         # (rrr-omega_2) angular velocity of link 2
         rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
-        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_4
+        rrr_u_1_t = omega_z*rrr_S_dot_t_3
         # (rrr-a_p) acceleration of the connection point without its centripetal part
         rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
         rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
@@ -4697,9 +4610,10 @@ def _run_legs(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
         rrr_bias_in_axes2_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
@@ -4838,8 +4752,8 @@ def _run_potential(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
@@ -4847,12 +4761,12 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_leg1_potential_t_3 = (
         rrr_leg1_g_in_axes1_x*(rrr_leg1_h_1_in_spec1_x + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2_t +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
-            rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y
-            + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
+            rrr_leg1_potential_t_2*rrr_leg1_s_1)) + rrr_leg1_g_in_axes1_y*(rrr_leg1_h_1_in_spec1_y
+            + rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y +
             rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
-            rrr_leg1_potential_t*rrr_leg1_s_1))
+            rrr_leg1_potential_t*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2_t)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
@@ -4898,8 +4812,8 @@ def _run_potential(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -4907,10 +4821,10 @@ def _run_potential(m, X):
         # (potential) potential energy
         rrr_potential_t_3 = (
         rrr_g_in_axes1_x*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
-            rrr_c_2*rrr_h_2_in_spec2_y + rrr_h_2_in_spec2_x*rrr_s_2 +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 - rrr_potential_t*rrr_s_1))
+            rrr_h_2_in_spec2_y*rrr_s_2_t + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1)) + rrr_g_in_axes1_y*(rrr_h_1_in_spec1_y +
+            rrr_c_2*rrr_h_2_in_spec2_y + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1) - rrr_h_2_in_spec2_x*rrr_s_2_t)
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
@@ -4922,7 +4836,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 114 mul, 61 add, 4 div, 5 sqrt, 0 trig
+# condition: 107 mul, 57 add, 4 div, 5 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -4999,29 +4913,23 @@ def _run_condition(m, X):
         inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x
         )
         # (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_leg1_s_2 = (
-        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
+        rrr_leg1_s_2_t = (
+        inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1
         )
-        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
-        rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2
-        rrr_leg1_r_1_in_axes1_x = (
-        rrr_leg1_joint2_offset_x + rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x
-        )
-        rrr_leg1_r_1_in_axes2_x = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2
-        )
-        rrr_leg1_r_1_in_axes2_y = (
-        rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y - rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2
-        )
-        # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1
-        rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2
+        # (rrr_leg1-S_dot) velocity of the connection point
+        rrr_leg1_S_dot_t = rrr_leg1_c_1*rrr_leg1_s_2_t - rrr_leg1_c_2*rrr_leg1_s_1
+        rrr_leg1_S_dot_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 + rrr_leg1_s_1*rrr_leg1_s_2_t
         axis_y_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_xx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_xx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_xy
         )
         axis_x_rrr_leg1_axes2_x = (
-        rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 - rrr_leg1_base_frame_yx*rrr_leg1_w_1_t
+        rrr_leg1_S_dot_t*rrr_leg1_base_frame_yx + rrr_leg1_S_dot_t_2*rrr_leg1_base_frame_yy
         )
+        # (rrr_leg1-r_1) from joint 1 to the connection point, along the links
+        rrr_leg1_d_2_in_axes2_x = rrr_leg1_c_2*rrr_leg1_joint2_offset_x
+        rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
+        rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
+        # (rrr_leg1-w_1) reciprocal vector 1
         rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
         rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
@@ -5111,18 +5019,17 @@ def _run_condition(m, X):
         # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
         rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
         # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        rrr_s_2_t = (
+        inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
+        # (rrr-S_dot) velocity of the connection point
+        rrr_S_dot_t = rrr_c_1*rrr_s_2_t - rrr_c_2*rrr_s_1
+        rrr_S_dot_t_2 = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2_t
+        axis_y_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_xx + rrr_S_dot_t_2*rrr_base_frame_xy
+        axis_x_rrr_axes2_x = rrr_S_dot_t*rrr_base_frame_yx + rrr_S_dot_t_2*rrr_base_frame_yy
         # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
-        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
-        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
         rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
         rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x

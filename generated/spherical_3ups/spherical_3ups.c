@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -810,6 +821,8 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (potential) */
     const real potential_t = fixed_centre_x*m_star;
     const real potential_t_2 = fixed_centre_y*m_star;
@@ -826,6 +839,7 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(b_c_in_platform_x);
     KEEP(b_c_in_platform_y);
     KEEP(b_c_in_platform_z);
@@ -1378,9 +1392,9 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, mu_p_t, mu_p_t_2, mu_p_t_3, B_p_xy, B_p_xz, B_p_yx, B_p_yz,
-        B_p_zx, B_p_zy, mu_p_t_7, mu_p_t_8, mu_p_t_9, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
-        J_star_yz, J_star_zz, Z_q_x, Z_q_y, Z_q_z;
+        R_yy, R_yz, R_zx, R_zy, R_zz, J_star_xx, J_star_yy, J_star_zz, J_star_xy, J_star_xz,
+        J_star_yz, mu_p_t, mu_p_t_2, mu_p_t_3, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_q_x,
+        Z_q_y, Z_q_z;
 } values;
 
 INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
@@ -1430,6 +1444,27 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     v->R_zx = quaternion_xz - quaternion_wy;
     v->R_zy = quaternion_wx + quaternion_yz;
     v->R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
+        m->J_star_in_platform_xy*v->R_xx;
+    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
+        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
+    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
+        m->J_star_in_platform_yz*v->R_zz;
+    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
+    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
+        J_star_t_4*v->R_yz;
+    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
+        J_star_t_6*v->R_yz;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real g_in_platform_x = v->R_yx*m->gravity_y + v->R_zx*m->gravity_z +
         v->R_xx*m->gravity_x;
@@ -1459,67 +1494,21 @@ INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
     v->B_p_zy = alpha_x + v->W_p_yz;
 }
 
-INLINE void stage_V_X(const prepared *m, size_t w, size_t k, const real *V, values *v)
+INLINE void stage_Z_dynamics(size_t w, size_t k, const real *V, values *v)
 {
-    /* (mu_p) inertia moment of the platform less that of its weight */
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real omega_x = V[0*w + k];
     const real omega_y = V[1*w + k];
     const real omega_z = V[2*w + k];
-    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
-    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
-    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
-    const real mu_p_t_4 = m->J_star_in_platform_xx*omega_in_platform_x +
-        m->J_star_in_platform_xy*omega_in_platform_y +
-        m->J_star_in_platform_xz*omega_in_platform_z;
-    const real mu_p_t_5 = m->J_star_in_platform_xy*omega_in_platform_x +
-        m->J_star_in_platform_yy*omega_in_platform_y +
-        m->J_star_in_platform_yz*omega_in_platform_z;
-    const real mu_p_t_6 = m->J_star_in_platform_xz*omega_in_platform_x +
-        m->J_star_in_platform_yz*omega_in_platform_y +
-        m->J_star_in_platform_zz*omega_in_platform_z;
-    v->mu_p_t_7 = mu_p_t_6*omega_in_platform_y - mu_p_t_5*omega_in_platform_z;
-    v->mu_p_t_8 = mu_p_t_4*omega_in_platform_z - mu_p_t_6*omega_in_platform_x;
-    v->mu_p_t_9 = mu_p_t_5*omega_in_platform_x - mu_p_t_4*omega_in_platform_y;
-}
-
-INLINE void stage_M_dynamics(const prepared *m, values *v)
-{
-    /* (J_star) inertia tensor about the platform origin */
-    const real J_star_t = m->J_star_in_platform_yz*v->R_xz - m->J_star_t_12*v->R_xy +
-        m->J_star_in_platform_xy*v->R_xx;
-    const real J_star_t_2 = m->J_star_in_platform_xy*v->R_yx +
-        m->J_star_in_platform_yz*v->R_yz - m->J_star_t_12*v->R_yy;
-    const real J_star_t_3 = m->J_star_in_platform_xy*v->R_zx - m->J_star_t_12*v->R_zy +
-        m->J_star_in_platform_yz*v->R_zz;
-    const real J_star_t_4 = m->J_star_t_14*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
-    const real J_star_t_5 = m->J_star_t_14*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
-    const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
-    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
-    v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
-        J_star_t_4*v->R_yz;
-    v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
-        J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
-    v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
-        J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
-}
-
-INLINE void stage_Z_dynamics(values *v)
-{
-    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-    const real Z_q_in_platform_x = v->mu_p_t_7 - v->mu_p_t;
-    const real Z_q_in_platform_y = v->mu_p_t_8 - v->mu_p_t_2;
-    const real Z_q_in_platform_z = v->mu_p_t_9 - v->mu_p_t_3;
-    v->Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
-        v->R_xz*Z_q_in_platform_z;
-    v->Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
-        v->R_yz*Z_q_in_platform_z;
-    v->Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
-        v->R_zz*Z_q_in_platform_z;
+    const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
+    const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
+    v->Z_q_x = Z_q_t_3*omega_y - v->R_xx*v->mu_p_t - v->R_xy*v->mu_p_t_2 - v->R_xz*v->mu_p_t_3
+        - Z_q_t_2*omega_z;
+    v->Z_q_y = Z_q_t*omega_z - v->R_yx*v->mu_p_t - v->R_yy*v->mu_p_t_2 - v->R_yz*v->mu_p_t_3 -
+        Z_q_t_3*omega_x;
+    v->Z_q_z = Z_q_t_2*omega_x - v->R_zx*v->mu_p_t - v->R_zy*v->mu_p_t_2 - v->R_zz*v->mu_p_t_3
+        - Z_q_t*omega_y;
 }
 
 typedef struct {
@@ -1725,44 +1714,44 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
     const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
-        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_3 = v->axis_y_ups_axes2_x*ups_Q_t -
+        v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_y_ups_axes2_y*ups_Q_t -
+        v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_z*ups_Q_t - v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_y*ups_Q_t_2;
     const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
-    const real ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
-        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
-    const real ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+    const real ups_Q_t_9 = v->axis_y_ups_axes2_x*ups_Q_t_3 + v->axis_z_ups_axes2_x*ups_Q_t_6;
+    const real ups_Q_t_10 = 2*ups_Q_t_9;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_y*ups_Q_t_4 + v->axis_z_ups_axes2_y*ups_Q_t_7;
+    const real ups_Q_yy = -2*ups_Q_t_11;
+    const real ups_Q_zz = ups_Q_t_10 - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - ups_Q_yy;
+    const real ups_Q_t_12 = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3
+        + v->axis_z_ups_axes2_x*ups_Q_t_7 + v->axis_z_ups_axes2_y*ups_Q_t_6;
+    const real ups_Q_xz = v->axis_y_ups_axes2_x*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_3 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
-    const real ups_Q_yy = -2*ups_Q_t_10;
-    const real ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+    const real ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
-    const real ups_Q_zz = -2*ups_Q_t_11;
     /* (M_aa) rotational block of M */
-    const real ups_M_aa_t = ups_Q_xy*v->ups_q_x - ups_Q_xx*v->ups_q_y;
+    const real ups_M_aa_t = ups_Q_t_10*v->ups_q_y - ups_Q_t_12*v->ups_q_x;
     const real ups_M_aa_t_2 = ups_Q_yz*v->ups_q_x;
-    const real ups_M_aa_t_3 = ups_Q_yy*v->ups_q_x - ups_Q_xy*v->ups_q_y;
+    const real ups_M_aa_t_3 = ups_Q_yy*v->ups_q_x + ups_Q_t_12*v->ups_q_y;
     const real ups_M_aa_t_4 = ups_Q_zz*v->ups_q_x - ups_Q_xz*v->ups_q_z;
     const real ups_M_aa_t_5 = ups_Q_xz*v->ups_q_y - ups_M_aa_t_2;
     v->ups_M_aa_t_6 = v->ups_q_y*(ups_Q_zz*v->ups_q_y - ups_Q_yz*v->ups_q_z) -
         v->ups_q_z*(ups_Q_yz*v->ups_q_y - ups_Q_yy*v->ups_q_z);
-    v->ups_M_aa_t_7 = v->ups_q_z*(ups_M_aa_t_2 - ups_Q_xy*v->ups_q_z) -
+    v->ups_M_aa_t_7 = v->ups_q_z*(ups_Q_t_12*v->ups_q_z + ups_M_aa_t_2) -
         ups_M_aa_t_4*v->ups_q_y;
     v->ups_M_aa_t_8 = ups_M_aa_t_3*v->ups_q_z + ups_M_aa_t_5*v->ups_q_y;
-    v->ups_M_aa_t_9 = ups_M_aa_t_4*v->ups_q_x - v->ups_q_z*(ups_Q_xz*v->ups_q_x -
-        ups_Q_xx*v->ups_q_z);
+    v->ups_M_aa_t_9 = ups_M_aa_t_4*v->ups_q_x - v->ups_q_z*(ups_Q_t_10*v->ups_q_z +
+        ups_Q_xz*v->ups_q_x);
     v->ups_M_aa_t_10 = ups_M_aa_t*v->ups_q_z + ups_M_aa_t_5*v->ups_q_x;
     v->ups_M_aa_t_11 = ups_M_aa_t_3*v->ups_q_x - ups_M_aa_t*v->ups_q_y;
 }
@@ -1898,11 +1887,45 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[18*w + k] = v->J_star_xx;
+    s[19*w + k] = v->J_star_yy;
+    s[20*w + k] = v->J_star_zz;
+    s[21*w + k] = v->J_star_xy;
+    s[22*w + k] = v->J_star_xz;
+    s[23*w + k] = v->J_star_yz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
 
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1917,18 +1940,39 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
-INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
-    *s)
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
 {
-    stage_V_X(m, w, k, V, v);
-    stage_M_dynamics(m, v);
-    stage_Z_dynamics(v);
-    s[18*w + k] = v->J_star_xx;
-    s[19*w + k] = v->J_star_xy;
-    s[20*w + k] = v->J_star_xz;
-    s[21*w + k] = v->J_star_yy;
-    s[22*w + k] = v->J_star_yz;
-    s[23*w + k] = v->J_star_zz;
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
+INLINE void dynamics_between(size_t w, size_t k, const real *V, values *v, real *s)
+{
+    stage_Z_dynamics(w, k, V, v);
     s[24*w + k] = v->Z_q_x;
     s[25*w + k] = v->Z_q_y;
     s[26*w + k] = v->Z_q_z;
@@ -1963,16 +2007,6 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, real *M, real *Z,
     status_flags *t)
 {
@@ -1980,19 +2014,19 @@ INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, 
     const real J_star_xx = s[18*w + k];
     const real M_aa_xx_of_legs = sums[0*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[19*w + k];
+    const real J_star_xy = s[21*w + k];
     const real M_aa_xy_of_legs = sums[1*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[20*w + k];
+    const real J_star_xz = s[22*w + k];
     const real M_aa_xz_of_legs = sums[2*w + k];
     const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[21*w + k];
+    const real J_star_yy = s[19*w + k];
     const real M_aa_yy_of_legs = sums[3*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[22*w + k];
+    const real J_star_yz = s[23*w + k];
     const real M_aa_yz_of_legs = sums[4*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
+    const real J_star_zz = s[20*w + k];
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_a) */
@@ -2026,20 +2060,20 @@ INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, 
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[27] = {0}, sums[9] = {0};
-    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[27] CLEARED, sums[9] CLEARED;
+    real terms_ups[9*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    dynamics_between(m, 1, 0, V, &v, s);
+    dynamics_between(1, 0, V, &v, s);
     dynamics_after(1, 0, s, sums, M, Z, t);
 }
 
@@ -2050,8 +2084,8 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
-        dynamics_between(m, LANES, k, V, &v, s);
+        any_before(m, LANES, k, X, &v, s, t);
+        dynamics_between(LANES, k, V, &v, s);
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2059,7 +2093,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2068,33 +2102,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void M_between(const prepared *m, size_t w, size_t k, values *v, real *s)
-{
-    stage_M_dynamics(m, v);
-    s[18*w + k] = v->J_star_xx;
-    s[19*w + k] = v->J_star_xy;
-    s[20*w + k] = v->J_star_xz;
-    s[21*w + k] = v->J_star_yy;
-    s[22*w + k] = v->J_star_yz;
-    s[23*w + k] = v->J_star_zz;
-}
-
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, real *terms, real *o)
 {
@@ -2113,30 +2120,25 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void M_after(size_t w, size_t k, const real *s, const real *sums, real *M, status_flags *t)
 {
     /* (M_aa) */
     const real J_star_xx = s[18*w + k];
     const real M_aa_xx_of_legs = sums[0*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[19*w + k];
+    const real J_star_xy = s[21*w + k];
     const real M_aa_xy_of_legs = sums[1*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[20*w + k];
+    const real J_star_xz = s[22*w + k];
     const real M_aa_xz_of_legs = sums[2*w + k];
     const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
-    const real J_star_yy = s[21*w + k];
+    const real J_star_yy = s[19*w + k];
     const real M_aa_yy_of_legs = sums[3*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[22*w + k];
+    const real J_star_yz = s[23*w + k];
     const real M_aa_yz_of_legs = sums[4*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[23*w + k];
+    const real J_star_zz = s[20*w + k];
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_aa) */
@@ -2154,20 +2156,19 @@ INLINE void M_after(size_t w, size_t k, const real *s, const real *sums, real *M
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    M_between(m, 1, 0, &v, s);
     M_after(1, 0, s, sums, M, t);
 }
 
@@ -2178,8 +2179,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
-        M_between(m, LANES, k, &v, s);
+        any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2187,7 +2187,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_ups(m, LANES, i, k, k, LANES, 1, s, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2196,26 +2196,9 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
+INLINE void Z_between(size_t w, size_t k, const real *V, values *v, real *s)
 {
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
-INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
-{
-    stage_V_X(m, w, k, V, v);
-    stage_Z_dynamics(v);
+    stage_Z_dynamics(w, k, V, v);
     s[18*w + k] = v->Z_q_x;
     s[19*w + k] = v->Z_q_y;
     s[20*w + k] = v->Z_q_z;
@@ -2235,11 +2218,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2263,20 +2241,20 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[21] = {0}, sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[21] CLEARED, sums[3] CLEARED;
+    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    Z_between(m, 1, 0, V, &v, s);
+    Z_between(1, 0, V, &v, s);
     Z_after(1, 0, s, sums, Z, t);
 }
 
@@ -2287,8 +2265,8 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
-        Z_between(m, LANES, k, V, &v, s);
+        any_before_2(m, LANES, k, X, &v, s, t);
+        Z_between(LANES, k, V, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
@@ -2296,7 +2274,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2305,22 +2283,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, real *o)
 {
@@ -2335,27 +2297,17 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
@@ -2366,51 +2318,38 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ups(m, LANES, i, k, k, LANES, s, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
-    stage_V_X(m, w, k, V, v);
     /* (mu_p) inertia moment of the platform less that of its weight */
+    const real omega_x = V[0*w + k];
+    const real omega_y = V[1*w + k];
+    const real omega_z = V[2*w + k];
+    const real omega_in_platform_x = v->R_yx*omega_y + v->R_zx*omega_z + v->R_xx*omega_x;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_zy*omega_z + v->R_yy*omega_y;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    const real mu_p_t_4 = m->J_star_in_platform_xx*omega_in_platform_x +
+        m->J_star_in_platform_xy*omega_in_platform_y +
+        m->J_star_in_platform_xz*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*omega_in_platform_x +
+        m->J_star_in_platform_yy*omega_in_platform_y +
+        m->J_star_in_platform_yz*omega_in_platform_z;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*omega_in_platform_x +
+        m->J_star_in_platform_yz*omega_in_platform_y +
+        m->J_star_in_platform_zz*omega_in_platform_z;
     const real alpha_x = A[0*w + k];
     const real alpha_y = A[1*w + k];
     const real alpha_z = A[2*w + k];
@@ -2419,13 +2358,16 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
     const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z - v->mu_p_t + v->mu_p_t_7;
+        m->J_star_in_platform_xz*alpha_in_platform_z - v->mu_p_t +
+        mu_p_t_6*omega_in_platform_y - mu_p_t_5*omega_in_platform_z;
     const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z - v->mu_p_t_2 + v->mu_p_t_8;
+        m->J_star_in_platform_yz*alpha_in_platform_z - v->mu_p_t_2 +
+        mu_p_t_4*omega_in_platform_z - mu_p_t_6*omega_in_platform_x;
     const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z - v->mu_p_t_3 + v->mu_p_t_9;
+        m->J_star_in_platform_zz*alpha_in_platform_z - v->mu_p_t_3 +
+        mu_p_t_5*omega_in_platform_x - mu_p_t_4*omega_in_platform_y;
     const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
         v->R_xz*mu_p_in_platform_z;
     const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
@@ -2500,12 +2442,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[21] = {0}, sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
+    real s[21] CLEARED, sums[3] CLEARED;
+    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, V, terms_ups,
+                o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
@@ -2524,7 +2469,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_ups[4*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 3*LANES);
@@ -2542,22 +2487,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, real *o)
 {
@@ -2590,10 +2519,10 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, o_ups);
     }
@@ -2609,7 +2538,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2622,22 +2551,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *V, real *o)
 {
@@ -2669,10 +2582,10 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, o_ups);
     }
@@ -2688,7 +2601,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2701,33 +2614,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *V, real *o)
 {
@@ -2762,10 +2648,10 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, o_ups);
     }
@@ -2781,7 +2667,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2794,33 +2680,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *V, real *o)
 {
@@ -2877,12 +2736,14 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, V, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), s, V, o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
@@ -2890,22 +2751,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     /* (potential) potential energy */
@@ -2940,11 +2785,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -2957,15 +2797,17 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, terms_ups, o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -3052,8 +2894,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3302,7 +3144,7 @@ int spherical_3ups_inverse_dynamics(const prepared *m, const real *X, const real
     *A, const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -3351,8 +3193,8 @@ int spherical_3ups_forward_dynamics(const prepared *m, const real *X, const real
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3421,7 +3263,7 @@ int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3438,7 +3280,7 @@ int spherical_3ups_leg_reactions(const prepared *m, const real *X, const real *V
 int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3459,8 +3301,8 @@ int spherical_3ups_condition(const prepared *m, const real *X, real *sigma_out, 
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {0, 1, 2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3491,9 +3333,9 @@ int spherical_3ups_manipulability(const prepared *m, const real *X, real *measur
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {0, 1, 2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3525,9 +3367,9 @@ int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *
     real *legs_out)
 {
     static const size_t places_divide_rows_1[] = {0, 1, 2};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3558,7 +3400,7 @@ int spherical_3ups_singularity_distance(const prepared *m, const real *X, real *
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -3643,7 +3485,7 @@ int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, 
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -3656,7 +3498,7 @@ int spherical_3ups_dissipation(const prepared *m, const real *X, const real *V, 
 
 int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3668,7 +3510,7 @@ int spherical_3ups_momentum(const prepared *m, const real *X, const real *V, rea
 int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3683,7 +3525,7 @@ int spherical_3ups_joint_margins(const prepared *m, const real *X, real *margins
 
 int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3697,7 +3539,7 @@ int spherical_3ups_within_limits(const prepared *m, const real *X, real *within_
 
 int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3708,7 +3550,7 @@ int spherical_3ups_actuator_positions(const prepared *m, const real *X, real *q_
 
 int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3720,7 +3562,7 @@ int spherical_3ups_actuator_rates(const prepared *m, const real *X, const real *
 int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3732,7 +3574,7 @@ int spherical_3ups_actuator_accelerations(const prepared *m, const real *X, cons
 int spherical_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -3808,7 +3650,7 @@ int spherical_3ups_difference(const real *X0, const real *X1, real *step_out)
 
 int spherical_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real turn_between_1[3] = {0}, scale_1[3] = {0}, X[NQ] = {0};
+    real turn_between_1[3] = {0}, scale_1[3] CLEARED, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -116,10 +116,10 @@ typedef struct {
             ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
     spherical_3ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, fixed_centre_x,
-            fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-            h_star_in_platform_y, h_star_in_platform_z, legs_size, potential_t, potential_t_2,
-            potential_t_3, spread_t;
+            J_star_t_14, J_star_t_15, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,
+            fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,
+            h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, legs_size, potential_t,
+            potential_t_2, potential_t_3, spread_t;
 } spherical_3ups_model;
 
 extern const spherical_3ups_params spherical_3ups_default_params;
@@ -136,13 +136,13 @@ extern const char *const spherical_3ups_ACTUATOR_NAMES[SPHERICAL_3UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_model *model);
 
-/* Inertia matrix M. 411 mul, 264 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 399 mul, 270 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int spherical_3ups_M(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *M);
 size_t spherical_3ups_M_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 513 mul, 363 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 537 mul, 381 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int spherical_3ups_Z(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *Z);
@@ -179,7 +179,7 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
     spherical_3ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 816 mul, 558 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 795 mul, 558 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int spherical_3ups_dynamics(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *M, spherical_3ups_real *Z, spherical_3ups_real
@@ -198,7 +198,7 @@ size_t spherical_3ups_inverse_dynamics_batch(const spherical_3ups_model *model, 
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
     spherical_3ups_real *wrench, spherical_3ups_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 816 mul, 558 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 795 mul, 558 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int spherical_3ups_forward_dynamics(const spherical_3ups_model *model, const spherical_3ups_real
@@ -281,7 +281,7 @@ size_t spherical_3ups_dissipation_batch(const spherical_3ups_model *model, size_
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *dissipation, int
     *status);
 
-/* Generalised momentum M V. 411 mul, 264 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 399 mul, 270 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int spherical_3ups_momentum(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *momentum);

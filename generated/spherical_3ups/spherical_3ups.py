@@ -649,6 +649,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (potential) potential energy
     potential_t = fixed_centre_x*m_star
     potential_t_2 = fixed_centre_y*m_star
@@ -660,9 +661,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-                J_star_t_14, fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y,
-                gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x,
+                fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -681,8 +682,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, fixed_centre_x, fixed_centre_y,
-                fixed_centre_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x,
+                fixed_centre_y, fixed_centre_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -698,8 +699,8 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz,
-                fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x,
+                fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,
                 h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
@@ -1812,15 +1813,15 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 816 mul, 558 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 795 mul, 558 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, fixed_centre_x,
-        fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-        h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x, fixed_centre_y, fixed_centre_z,
+        gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1871,13 +1872,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (mu_p) inertia moment of the platform less that of its weight
     g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
     g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
@@ -1885,31 +1885,13 @@ def _run_dynamics(m, X, V):
     mu_p_t = g_in_platform_z*h_star_in_platform_y - g_in_platform_y*h_star_in_platform_z
     mu_p_t_2 = g_in_platform_x*h_star_in_platform_z - g_in_platform_z*h_star_in_platform_x
     mu_p_t_3 = g_in_platform_y*h_star_in_platform_x - g_in_platform_x*h_star_in_platform_y
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    mu_p_t_4 = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    mu_p_t_5 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    mu_p_t_6 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    mu_p_t_7 = mu_p_t_6*omega_in_platform_y - mu_p_t_5*omega_in_platform_z
-    mu_p_t_8 = mu_p_t_4*omega_in_platform_z - mu_p_t_6*omega_in_platform_x
-    mu_p_t_9 = mu_p_t_5*omega_in_platform_x - mu_p_t_4*omega_in_platform_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_in_platform_x = mu_p_t_7 - mu_p_t
-    Z_q_in_platform_y = mu_p_t_8 - mu_p_t_2
-    Z_q_in_platform_z = mu_p_t_9 - mu_p_t_3
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y - R_xx*mu_p_t - R_xy*mu_p_t_2 - R_xz*mu_p_t_3 - Z_q_t_2*omega_z
+    Z_q_y = Z_q_t*omega_z - R_yx*mu_p_t - R_yy*mu_p_t_2 - R_yz*mu_p_t_3 - Z_q_t_3*omega_x
+    Z_q_z = Z_q_t_2*omega_x - R_zx*mu_p_t - R_zy*mu_p_t_2 - R_zz*mu_p_t_3 - Z_q_t*omega_y
     (
     M_aa_ups_xx, M_aa_ups_xy, M_aa_t, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz, Z_a_ups_x, Z_a_ups_y,
         Z_a_ups_z,
@@ -2130,38 +2112,37 @@ def _run_dynamics(m, X, V):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
         axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
@@ -2176,18 +2157,18 @@ def _run_dynamics(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_aa_t = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
         ups_M_aa_t_2 = ups_Q_yz*ups_q_x
-        ups_M_aa_t_3 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_aa_t_3 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
         ups_M_aa_t_4 = ups_Q_zz*ups_q_x - ups_Q_xz*ups_q_z
         ups_M_aa_t_5 = ups_Q_xz*ups_q_y - ups_M_aa_t_2
         ups_M_aa_t_6 = (
         ups_q_y*(ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z) - ups_q_z*(ups_Q_yz*ups_q_y -
             ups_Q_yy*ups_q_z)
         )
-        ups_M_aa_t_7 = ups_q_z*(ups_M_aa_t_2 - ups_Q_xy*ups_q_z) - ups_M_aa_t_4*ups_q_y
+        ups_M_aa_t_7 = ups_q_z*(ups_M_aa_t_2 + ups_Q_t_12*ups_q_z) - ups_M_aa_t_4*ups_q_y
         ups_M_aa_t_8 = ups_M_aa_t_3*ups_q_z + ups_M_aa_t_5*ups_q_y
-        ups_M_aa_t_9 = ups_M_aa_t_4*ups_q_x - ups_q_z*(ups_Q_xz*ups_q_x - ups_Q_xx*ups_q_z)
+        ups_M_aa_t_9 = ups_M_aa_t_4*ups_q_x - ups_q_z*(ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x)
         ups_M_aa_t_10 = ups_M_aa_t*ups_q_z + ups_M_aa_t_5*ups_q_x
         ups_M_aa_t_11 = ups_M_aa_t_3*ups_q_x - ups_M_aa_t*ups_q_y
         # (Z_a) rotational part of Z
@@ -2246,13 +2227,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 411 mul, 264 add, 6 div, 6 sqrt, 0 trig
+# M: 399 mul, 270 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, fixed_centre_x, fixed_centre_y, fixed_centre_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x, fixed_centre_y, fixed_centre_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2294,13 +2275,12 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     M_aa_ups_xx, M_aa_ups_xy, M_aa_t, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -2395,51 +2375,50 @@ def _run_M(m, X):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_aa_t = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
         ups_M_aa_t_2 = ups_Q_yz*ups_q_x
-        ups_M_aa_t_3 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_aa_t_3 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
         ups_M_aa_t_4 = ups_Q_zz*ups_q_x - ups_Q_xz*ups_q_z
         ups_M_aa_t_5 = ups_Q_xz*ups_q_y - ups_M_aa_t_2
         ups_M_aa_t_6 = (
         ups_q_y*(ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z) - ups_q_z*(ups_Q_yz*ups_q_y -
             ups_Q_yy*ups_q_z)
         )
-        ups_M_aa_t_7 = ups_q_z*(ups_M_aa_t_2 - ups_Q_xy*ups_q_z) - ups_M_aa_t_4*ups_q_y
+        ups_M_aa_t_7 = ups_q_z*(ups_M_aa_t_2 + ups_Q_t_12*ups_q_z) - ups_M_aa_t_4*ups_q_y
         ups_M_aa_t_8 = ups_M_aa_t_3*ups_q_z + ups_M_aa_t_5*ups_q_y
-        ups_M_aa_t_9 = ups_M_aa_t_4*ups_q_x - ups_q_z*(ups_Q_xz*ups_q_x - ups_Q_xx*ups_q_z)
+        ups_M_aa_t_9 = ups_M_aa_t_4*ups_q_x - ups_q_z*(ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x)
         ups_M_aa_t_10 = ups_M_aa_t*ups_q_z + ups_M_aa_t_5*ups_q_x
         ups_M_aa_t_11 = ups_M_aa_t_3*ups_q_x - ups_M_aa_t*ups_q_y
         ok = (
@@ -2474,15 +2453,15 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 513 mul, 363 add, 6 div, 6 sqrt, 0 trig
+# Z: 537 mul, 381 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
-        J_star_in_platform_yz, J_star_in_platform_zz, fixed_centre_x, fixed_centre_y,
-        fixed_centre_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
-        h_star_in_platform_y, h_star_in_platform_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, J_star_t_15, fixed_centre_x, fixed_centre_y, fixed_centre_z,
+        gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2522,6 +2501,21 @@ def _run_Z(m, X, V):
     ok = True
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
+    # (J_star) inertia tensor about the platform origin
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
+    J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     # (mu_p) inertia moment of the platform less that of its weight
     g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
     g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
@@ -2529,31 +2523,13 @@ def _run_Z(m, X, V):
     mu_p_t = g_in_platform_z*h_star_in_platform_y - g_in_platform_y*h_star_in_platform_z
     mu_p_t_2 = g_in_platform_x*h_star_in_platform_z - g_in_platform_z*h_star_in_platform_x
     mu_p_t_3 = g_in_platform_y*h_star_in_platform_x - g_in_platform_x*h_star_in_platform_y
-    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    mu_p_t_4 = (
-    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
-        J_star_in_platform_xz*omega_in_platform_z
-    )
-    mu_p_t_5 = (
-    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
-        J_star_in_platform_yz*omega_in_platform_z
-    )
-    mu_p_t_6 = (
-    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
-        J_star_in_platform_zz*omega_in_platform_z
-    )
-    mu_p_t_7 = mu_p_t_6*omega_in_platform_y - mu_p_t_5*omega_in_platform_z
-    mu_p_t_8 = mu_p_t_4*omega_in_platform_z - mu_p_t_6*omega_in_platform_x
-    mu_p_t_9 = mu_p_t_5*omega_in_platform_x - mu_p_t_4*omega_in_platform_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_in_platform_x = mu_p_t_7 - mu_p_t
-    Z_q_in_platform_y = mu_p_t_8 - mu_p_t_2
-    Z_q_in_platform_z = mu_p_t_9 - mu_p_t_3
-    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
-    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
-    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
+    Z_q_t = J_star_xx*omega_x + J_star_xy*omega_y + J_star_xz*omega_z
+    Z_q_t_2 = J_star_xy*omega_x + J_star_yy*omega_y + J_star_yz*omega_z
+    Z_q_t_3 = J_star_xz*omega_x + J_star_yz*omega_y + J_star_zz*omega_z
+    Z_q_x = Z_q_t_3*omega_y - R_xx*mu_p_t - R_xy*mu_p_t_2 - R_xz*mu_p_t_3 - Z_q_t_2*omega_z
+    Z_q_y = Z_q_t*omega_z - R_yx*mu_p_t - R_yy*mu_p_t_2 - R_yz*mu_p_t_3 - Z_q_t_3*omega_x
+    Z_q_z = Z_q_t_2*omega_x - R_zx*mu_p_t - R_zy*mu_p_t_2 - R_zz*mu_p_t_3 - Z_q_t*omega_y
     Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = [0.0] * 3
     for leg, k in legs[0]:
         (
@@ -2966,26 +2942,23 @@ def _run_required(m, X, V, A):
     J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
         J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_t_7 = mu_p_t_6*omega_in_platform_y - mu_p_t_5*omega_in_platform_z
-    mu_p_t_8 = mu_p_t_4*omega_in_platform_z - mu_p_t_6*omega_in_platform_x
-    mu_p_t_9 = mu_p_t_5*omega_in_platform_x - mu_p_t_4*omega_in_platform_y
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
     mu_p_in_platform_x = (
-    mu_p_t_7 + J_star_in_platform_xx*alpha_in_platform_x +
-        J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z -
-        mu_p_t
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_6*omega_in_platform_y - mu_p_t -
+        mu_p_t_5*omega_in_platform_z
     )
     mu_p_in_platform_y = (
-    mu_p_t_8 + J_star_in_platform_xy*alpha_in_platform_x +
-        J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z -
-        mu_p_t_2
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t_4*omega_in_platform_z - mu_p_t_2 -
+        mu_p_t_6*omega_in_platform_x
     )
     mu_p_in_platform_z = (
-    mu_p_t_9 + J_star_in_platform_xz*alpha_in_platform_x +
-        J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z -
-        mu_p_t_3
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_5*omega_in_platform_x - mu_p_t_3 -
+        mu_p_t_4*omega_in_platform_y
     )
     mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
     mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z

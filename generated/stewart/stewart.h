@@ -114,7 +114,7 @@ typedef struct {
             ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
     stewart_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } stewart_model;
@@ -133,12 +133,12 @@ extern const char *const stewart_ACTUATOR_NAMES[STEWART_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_prepare(const stewart_params *params, stewart_model *model);
 
-/* Inertia matrix M. 795 mul, 609 add, 12 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 774 mul, 610 add, 12 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_M(const stewart_model *model, const stewart_real *X, stewart_real *M);
 size_t stewart_M_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 1008 mul, 750 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1005 mul, 750 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_Z(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *Z);
@@ -171,14 +171,14 @@ int stewart_joint_accelerations(const stewart_model *model, const stewart_real *
 size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
     *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1542 mul, 1191 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1521 mul, 1192 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *M, stewart_real *Z, stewart_real *H);
 size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1071 mul, 831 add, 12 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1062 mul, 825 add, 12 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_inverse_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -187,7 +187,7 @@ size_t stewart_inverse_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau,
     int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1542 mul, 1191 add, 12 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1521 mul, 1192 add, 12 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_forward_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -262,7 +262,7 @@ int stewart_dissipation(const stewart_model *model, const stewart_real *X, const
 size_t stewart_dissipation_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *dissipation, int *status);
 
-/* Generalised momentum M V. 795 mul, 609 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 774 mul, 610 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_momentum(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *momentum);

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -842,6 +853,8 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -858,6 +871,7 @@ int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1635,8 +1649,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1706,16 +1720,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1747,7 +1760,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1767,11 +1780,11 @@ typedef struct {
         ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
         ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
         ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
-        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz,
-        ups_Q_zz, ups_M_ta_t_3, ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-        ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3,
-        ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
-        ups_Z_a_t_3, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz,
+        ups_Q_yz, ups_M_ta_t, ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7,
+        ups_M_ta_t_8, ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4,
+        ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+        ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1976,51 +1989,48 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
     const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
-        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_3 = v->axis_y_ups_axes2_x*ups_Q_t -
+        v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_y_ups_axes2_y*ups_Q_t -
+        v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_z*ups_Q_t - v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_y*ups_Q_t_2;
     const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
-    v->ups_Q_xx = -2*ups_Q_t_9;
-    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
-        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
-    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+    const real ups_Q_t_9 = v->axis_y_ups_axes2_x*ups_Q_t_3 + v->axis_z_ups_axes2_x*ups_Q_t_6;
+    v->ups_Q_t_10 = 2*ups_Q_t_9;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_y*ups_Q_t_4 + v->axis_z_ups_axes2_y*ups_Q_t_7;
+    v->ups_Q_yy = -2*ups_Q_t_11;
+    v->ups_Q_zz = v->ups_Q_t_10 - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_yy;
+    v->ups_Q_t_12 = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 +
+        v->axis_z_ups_axes2_x*ups_Q_t_7 + v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_x*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_3 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
-    v->ups_Q_yy = -2*ups_Q_t_10;
-    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+    v->ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
-    v->ups_Q_zz = -2*ups_Q_t_11;
     /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = v->ups_Q_xy*v->ups_q_z;
-    const real ups_M_ta_t_2 = v->ups_Q_xz*v->ups_q_y;
-    v->ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    v->ups_M_ta_t_4 = v->ups_Q_xx*v->ups_q_z - v->ups_Q_xz*v->ups_q_x;
-    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
-    v->ups_M_ta_t_6 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
-    const real ups_M_ta_t_7 = v->ups_Q_yz*v->ups_q_x;
-    v->ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t;
-    v->ups_M_ta_t_9 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
-    v->ups_M_ta_t_10 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
-    v->ups_M_ta_t_11 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
-    v->ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    v->ups_M_ta_t = v->ups_Q_t_10*v->ups_q_z + v->ups_Q_xz*v->ups_q_x;
+    v->ups_M_ta_t_2 = v->ups_Q_t_10*v->ups_q_y - v->ups_Q_t_12*v->ups_q_x;
+    v->ups_M_ta_t_3 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
+    const real ups_M_ta_t_4 = v->ups_Q_yz*v->ups_q_x;
+    v->ups_M_ta_t_5 = v->ups_Q_t_12*v->ups_q_z + ups_M_ta_t_4;
+    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x + v->ups_Q_t_12*v->ups_q_y;
+    v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
+    v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
+    v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
     /* (M_aa) rotational block of M */
-    v->ups_M_aa_t = v->ups_M_ta_t_10*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
-    v->ups_M_aa_t_2 = v->ups_M_ta_t_11*v->ups_q_y + v->ups_M_ta_t_8*v->ups_q_z;
-    v->ups_M_aa_t_3 = v->ups_M_ta_t_12*v->ups_q_y - v->ups_M_ta_t_9*v->ups_q_z;
-    v->ups_M_aa_t_4 = v->ups_M_ta_t_4*v->ups_q_z - v->ups_M_ta_t_11*v->ups_q_x;
-    v->ups_M_aa_t_5 = v->ups_M_ta_t_5*v->ups_q_z - v->ups_M_ta_t_12*v->ups_q_x;
-    v->ups_M_aa_t_6 = v->ups_M_ta_t_9*v->ups_q_x - v->ups_M_ta_t_5*v->ups_q_y;
+    v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_5*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_y;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_4 = v->ups_M_ta_t*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z - v->ups_M_ta_t_9*v->ups_q_x;
+    v->ups_M_aa_t_6 = v->ups_M_ta_t_6*v->ups_q_x - v->ups_M_ta_t_2*v->ups_q_y;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -2154,11 +2164,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2174,14 +2181,78 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2203,37 +2274,36 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (ups-w_3) reciprocal vector 3 */
     o[0*count + k] = v.axis_x_ups_axes2_x;
     o[1*count + k] = v.axis_x_ups_axes2_y;
@@ -2249,37 +2319,27 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_xx = m->m_star - M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_t = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xy = h_star_z - M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2290,48 +2350,48 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
     const real M_tt_xz = sums[2*w + k];
     M[2*w + k] = M_tt_xz;
     M[2*NV*w + k] = M_tt_xz;
@@ -2341,7 +2401,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2350,7 +2409,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
     M[(NV + 4)*w + k] = -M_ta_t;
     M[(4*NV + 1)*w + k] = -M_ta_t;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2359,7 +2417,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2380,7 +2437,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[3*w + k] = Z_a_x;
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
         ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
@@ -2389,17 +2446,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_ups[26*LEGS(LEGS_OF_ups)] CLEARED, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2409,20 +2466,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2431,31 +2488,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2463,37 +2495,31 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2501,19 +2527,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_xx = m->m_star - M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_t = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xy = h_star_z - M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2524,28 +2553,28 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
-    M[1*w + k] = M_tt_xy;
-    M[NV*w + k] = M_tt_xy;
+    const real M_tt_t_2 = sums[1*w + k];
+    M[1*w + k] = -M_tt_t_2;
+    M[NV*w + k] = -M_tt_t_2;
     const real M_tt_xz = sums[2*w + k];
     M[2*w + k] = M_tt_xz;
     M[2*NV*w + k] = M_tt_xz;
@@ -2555,7 +2584,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2564,7 +2592,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
     M[(NV + 4)*w + k] = -M_ta_t;
     M[(4*NV + 1)*w + k] = -M_ta_t;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2573,7 +2600,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2586,7 +2612,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(4*NV + 5)*w + k] = M_aa_yz;
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
         M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
@@ -2594,17 +2620,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_ups[20*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2613,19 +2639,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2634,22 +2660,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2679,11 +2689,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2721,15 +2726,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -2745,7 +2750,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_ups[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2754,7 +2759,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2763,22 +2768,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2798,30 +2787,17 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
@@ -2832,46 +2808,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2882,9 +2831,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -2914,27 +2860,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3032,12 +2975,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups,
+                o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
@@ -3050,22 +2996,6 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3098,10 +3028,10 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -3117,7 +3047,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3130,22 +3060,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3177,10 +3091,10 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
@@ -3196,7 +3110,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3209,33 +3123,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3270,10 +3157,10 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -3289,7 +3176,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_ups[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3302,33 +3189,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3385,12 +3245,14 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
@@ -3398,22 +3260,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3449,11 +3295,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3466,15 +3307,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups,
+                o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -3569,8 +3413,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3770,8 +3614,8 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
 {
     static const real no_wrench[NW] = {0};
     static const real no_weights[NU] = {1, 1, 1, 1, 1, 1, 1};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, inverse_root_1[NU] = {0},
-        scale_columns_1[NV*NU] = {0}, least_norm_1[NU] = {0}, tau[NU] = {0};
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, inverse_root_1[NU] CLEARED,
+        scale_columns_1[NV*NU] CLEARED, least_norm_1[NU] = {0}, tau[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3972,8 +3816,8 @@ int stewart_7ups_forward_dynamics(const prepared *m, const real *X, const real *
     *tau, const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4042,8 +3886,8 @@ int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, 
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5, 6};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
-        leg_force[3*NL] = {0}, actuator[21] = {0}, forces[3*NL] = {0};
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, least_norm_1[NU] = {0},
+        leg_force[3*NL] CLEARED, actuator[21] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4064,7 +3908,7 @@ int stewart_7ups_leg_reactions(const prepared *m, const real *X, const real *V, 
 int stewart_7ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4082,7 +3926,7 @@ int stewart_7ups_energy(const prepared *m, const real *X, const real *V, real *k
 
 int stewart_7ups_null_space(const prepared *m, const real *X, real *basis_out)
 {
-    real H[NV*NU] = {0}, basis[NU] = {0};
+    real H[NV*NU] CLEARED, basis[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4096,8 +3940,8 @@ int stewart_7ups_condition(const prepared *m, const real *X, real *sigma_out, re
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4128,9 +3972,9 @@ int stewart_7ups_manipulability(const prepared *m, const real *X, real *measure_
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4162,9 +4006,9 @@ int stewart_7ups_singularity_distance(const prepared *m, const real *X, real *ac
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4198,9 +4042,9 @@ int stewart_7ups_force_distribution(const prepared *m, const real *X, const real
 {
     static const real no_wrench[NW] = {0};
     static const real no_reference[NU] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, least_norm_1[NU] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, least_norm_1[NU] = {0},
         null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] = {0}, times_1[NU] = {0},
-        add_1[NU] = {0}, tau[NU] = {0};
+        add_1[NU] CLEARED, tau[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4226,7 +4070,7 @@ int stewart_7ups_force_distribution(const prepared *m, const real *X, const real
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[7] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[7] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4311,7 +4155,7 @@ int stewart_7ups_dissipation(const prepared *m, const real *X, const real *V, re
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4324,7 +4168,7 @@ int stewart_7ups_dissipation(const prepared *m, const real *X, const real *V, re
 
 int stewart_7ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4337,7 +4181,7 @@ int stewart_7ups_joint_margins(const prepared *m, const real *X, real *margins_o
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4352,7 +4196,7 @@ int stewart_7ups_joint_margins(const prepared *m, const real *X, real *margins_o
 
 int stewart_7ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4366,7 +4210,7 @@ int stewart_7ups_within_limits(const prepared *m, const real *X, real *within_ou
 
 int stewart_7ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4377,7 +4221,7 @@ int stewart_7ups_actuator_positions(const prepared *m, const real *X, real *q_ou
 
 int stewart_7ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4389,7 +4233,7 @@ int stewart_7ups_actuator_rates(const prepared *m, const real *X, const real *V,
 int stewart_7ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4401,7 +4245,7 @@ int stewart_7ups_actuator_accelerations(const prepared *m, const real *X, const 
 int stewart_7ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4461,7 +4305,7 @@ int stewart_7ups_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int stewart_7ups_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4477,7 +4321,7 @@ int stewart_7ups_retract(const real *X, const real *step, real *X_moved_out)
 
 int stewart_7ups_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4493,7 +4337,8 @@ int stewart_7ups_difference(const real *X0, const real *X1, real *step_out)
 
 int stewart_7ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -115,7 +115,7 @@ typedef struct {
             ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
     stewart_7ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } stewart_7ups_model;
@@ -134,13 +134,13 @@ extern const char *const stewart_7ups_ACTUATOR_NAMES[STEWART_7UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *model);
 
-/* Inertia matrix M. 920 mul, 703 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 896 mul, 704 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_7ups_M(const stewart_7ups_model *model, const stewart_7ups_real *X, stewart_7ups_real
     *M);
 size_t stewart_7ups_M_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1163 mul, 865 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1160 mul, 865 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_Z(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *Z);
@@ -176,7 +176,7 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
     stewart_7ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1786 mul, 1377 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1762 mul, 1378 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
@@ -184,7 +184,7 @@ size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z,
     stewart_7ups_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1234 mul, 956
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1225 mul, 950
    add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -195,7 +195,7 @@ size_t stewart_7ups_inverse_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *wrench, stewart_7ups_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1234 mul, 956 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1225 mul, 950 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics_weighted(const stewart_7ups_model *model, const
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
@@ -205,7 +205,7 @@ size_t stewart_7ups_inverse_dynamics_weighted_batch(const stewart_7ups_model *mo
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1786 mul, 1377 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1762 mul, 1378 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_forward_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -278,7 +278,7 @@ size_t stewart_7ups_singularity_distance_batch(const stewart_7ups_model *model, 
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1234 mul, 956 add, 14 div, 14 sqrt,
+   negative forces: tau_max = -t keeps tensions of t at least. 1225 mul, 950 add, 14 div, 14 sqrt,
    0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
    or NULL), reference (NU, or NULL). Out: tau (NU). */
 int stewart_7ups_force_distribution(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -305,7 +305,7 @@ int stewart_7ups_dissipation(const stewart_7ups_model *model, const stewart_7ups
 size_t stewart_7ups_dissipation_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *dissipation, int *status);
 
-/* Generalised momentum M V. 920 mul, 703 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 896 mul, 704 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_7ups_momentum(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *momentum);

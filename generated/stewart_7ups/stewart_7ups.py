@@ -683,6 +683,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -694,9 +695,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -715,8 +716,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -732,9 +733,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -1939,14 +1940,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1786 mul, 1377 add, 14 div, 14 sqrt, 0 trig
+# dynamics: 1762 mul, 1378 add, 14 div, 14 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2013,13 +2014,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2035,11 +2035,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
-        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
-        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x,
-        Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
-    ) = [0.0] * 27
+    M_tt_t, M_tt_t_2, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_t, M_ta_zz, M_ta_t_2,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx, M_aa_ups_xy,
+        M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x,
+        Z_a_ups_y, Z_a_ups_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -2259,38 +2259,37 @@ def _run_dynamics(m, X, V):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
         axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
@@ -2305,25 +2304,22 @@ def _run_dynamics(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_xy*ups_q_z
-        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
-        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
-        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
-        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
-        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
-        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t
-        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
-        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
-        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
+        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_4 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
+        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
-        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
-        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
+        ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         # (Z_a) rotational part of Z
         ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
@@ -2338,27 +2334,26 @@ def _run_dynamics(m, X, V):
             & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_ups_xx += ups_Q_xx
-        M_tt_xy += ups_Q_xy
+        M_tt_t += ups_Q_t_10
+        M_tt_t_2 += ups_Q_t_12
         M_tt_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += ups_M_ta_t_3
-        M_ta_ups_xy += ups_M_ta_t_4
-        M_ta_ups_xz += ups_M_ta_t_5
-        M_ta_ups_yx += ups_M_ta_t_6
-        M_ta_t += ups_M_ta_t_8
-        M_ta_ups_yz += ups_M_ta_t_9
-        M_ta_ups_zx += ups_M_ta_t_10
-        M_ta_ups_zy += ups_M_ta_t_11
-        M_ta_zz += ups_M_ta_t_12
+        M_ta_t += ups_M_ta_t_5
+        M_ta_zz += ups_M_ta_t_9
+        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xz += ups_M_ta_t_2
+        M_ta_ups_yx += ups_M_ta_t_3
+        M_ta_ups_yz += ups_M_ta_t_6
+        M_ta_ups_zx += ups_M_ta_t_7
+        M_ta_ups_zy += ups_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t
         M_aa_ups_xy += ups_M_aa_t_2
         M_aa_ups_xz += ups_M_aa_t_3
-        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_t += ups_M_aa_t_4
         M_aa_ups_yz += ups_M_aa_t_5
         M_aa_ups_zz += ups_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2378,11 +2373,12 @@ def _run_dynamics(m, X, V):
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_xx = m_star - M_tt_t
     M_tt_yy = M_tt_ups_yy + m_star
     M_tt_zz = M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = M_ta_ups_xy + h_star_z
+    M_ta_xx = M_ta_t - M_ta_zz
+    M_ta_xy = h_star_z - M_ta_t_2
     M_ta_xz = M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_ups_yx - h_star_z
     M_ta_yz = M_ta_ups_yz + h_star_x
@@ -2392,7 +2388,7 @@ def _run_dynamics(m, X, V):
     M_aa_xx = J_star_xx + M_aa_ups_xx
     M_aa_xy = J_star_xy + M_aa_ups_xy
     M_aa_xz = J_star_xz + M_aa_ups_xz
-    M_aa_yy = J_star_yy + M_aa_ups_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_ups_yz
     M_aa_zz = J_star_zz + M_aa_ups_zz
     # (Z_t) translational part of Z
@@ -2405,8 +2401,8 @@ def _run_dynamics(m, X, V):
     Z_a_z = Z_a_ups_z + Z_q_z
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = M_tt_xy
-    out_M[6] = M_tt_xy
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
     out_M[2] = M_tt_xz
     out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
@@ -2453,13 +2449,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 920 mul, 703 add, 14 div, 14 sqrt, 0 trig
+# M: 896 mul, 704 add, 14 div, 14 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2512,18 +2508,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
-        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
-        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-    ) = [0.0] * 21
+    M_tt_t, M_tt_t_2, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_t, M_ta_zz, M_ta_t_2,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx, M_aa_ups_xy,
+        M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -2617,93 +2612,89 @@ def _run_M(m, X):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_xy*ups_q_z
-        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
-        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
-        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
-        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
-        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
-        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_8 = ups_M_ta_t_7 - ups_M_ta_t
-        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
-        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
-        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
+        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_4 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
+        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
-        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
-        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
+        ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
             & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_ups_xx += ups_Q_xx
-        M_tt_xy += ups_Q_xy
+        M_tt_t += ups_Q_t_10
+        M_tt_t_2 += ups_Q_t_12
         M_tt_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += ups_M_ta_t_3
-        M_ta_ups_xy += ups_M_ta_t_4
-        M_ta_ups_xz += ups_M_ta_t_5
-        M_ta_ups_yx += ups_M_ta_t_6
-        M_ta_t += ups_M_ta_t_8
-        M_ta_ups_yz += ups_M_ta_t_9
-        M_ta_ups_zx += ups_M_ta_t_10
-        M_ta_ups_zy += ups_M_ta_t_11
-        M_ta_zz += ups_M_ta_t_12
+        M_ta_t += ups_M_ta_t_5
+        M_ta_zz += ups_M_ta_t_9
+        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xz += ups_M_ta_t_2
+        M_ta_ups_yx += ups_M_ta_t_3
+        M_ta_ups_yz += ups_M_ta_t_6
+        M_ta_ups_zx += ups_M_ta_t_7
+        M_ta_ups_zy += ups_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t
         M_aa_ups_xy += ups_M_aa_t_2
         M_aa_ups_xz += ups_M_aa_t_3
-        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_t += ups_M_aa_t_4
         M_aa_ups_yz += ups_M_aa_t_5
         M_aa_ups_zz += ups_M_aa_t_6
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_xx = m_star - M_tt_t
     M_tt_yy = M_tt_ups_yy + m_star
     M_tt_zz = M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = M_ta_ups_xy + h_star_z
+    M_ta_xx = M_ta_t - M_ta_zz
+    M_ta_xy = h_star_z - M_ta_t_2
     M_ta_xz = M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_ups_yx - h_star_z
     M_ta_yz = M_ta_ups_yz + h_star_x
@@ -2713,13 +2704,13 @@ def _run_M(m, X):
     M_aa_xx = J_star_xx + M_aa_ups_xx
     M_aa_xy = J_star_xy + M_aa_ups_xy
     M_aa_xz = J_star_xz + M_aa_ups_xz
-    M_aa_yy = J_star_yy + M_aa_ups_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_ups_yz
     M_aa_zz = J_star_zz + M_aa_ups_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = M_tt_xy
-    out_M[6] = M_tt_xy
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
     out_M[2] = M_tt_xz
     out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
@@ -2758,14 +2749,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1163 mul, 865 add, 14 div, 14 sqrt, 0 trig
+# Z: 1160 mul, 865 add, 14 div, 14 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2830,13 +2821,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3192,7 +3182,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1234 mul, 956 add, 14 div, 14 sqrt, 0 trig
+# required: 1225 mul, 950 add, 14 div, 14 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3290,9 +3280,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3316,27 +3303,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (

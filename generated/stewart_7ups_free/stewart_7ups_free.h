@@ -149,7 +149,7 @@ typedef struct {
             ups_leg7_potential_t[1], ups_leg7_potential_t_2[1], ups_leg7_potential_t_3[1];
     stewart_7ups_free_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, m_star;
 } stewart_7ups_free_model;
@@ -168,13 +168,13 @@ extern const char *const stewart_7ups_free_ACTUATOR_NAMES[STEWART_7UPS_FREE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7ups_free_model *model);
 
-/* Inertia matrix M. 920 mul, 724 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 896 mul, 726 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_7ups_free_M(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     stewart_7ups_free_real *M);
 size_t stewart_7ups_free_M_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1163 mul, 871 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1160 mul, 871 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_free_Z(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     const stewart_7ups_free_real *V, stewart_7ups_free_real *Z);
@@ -213,7 +213,7 @@ size_t stewart_7ups_free_joint_accelerations_batch(const stewart_7ups_free_model
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, stewart_7ups_free_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1780 mul, 1401 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1756 mul, 1403 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_free_dynamics(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M, stewart_7ups_free_real *Z,
@@ -222,7 +222,7 @@ size_t stewart_7ups_free_dynamics_batch(const stewart_7ups_free_model *model, si
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M,
     stewart_7ups_free_real *Z, stewart_7ups_free_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1228 mul, 959 add, 14 div, 14 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1219 mul, 953 add, 14 div, 14 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_7ups_free_inverse_dynamics(const stewart_7ups_free_model *model, const
@@ -232,7 +232,7 @@ size_t stewart_7ups_free_inverse_dynamics_batch(const stewart_7ups_free_model *m
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, const stewart_7ups_free_real *wrench, stewart_7ups_free_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1780 mul, 1401 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1756 mul, 1403 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_free_forward_dynamics(const stewart_7ups_free_model *model, const
@@ -320,7 +320,7 @@ size_t stewart_7ups_free_dissipation_batch(const stewart_7ups_free_model *model,
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real
     *dissipation, int *status);
 
-/* Generalised momentum M V. 920 mul, 724 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 896 mul, 726 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_7ups_free_momentum(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *momentum);

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -829,6 +840,8 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -845,6 +858,7 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1524,8 +1538,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1595,16 +1609,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1636,7 +1649,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1658,12 +1671,12 @@ typedef struct {
         sps_zeta_3_in_axes3_x, sps_zeta_3_in_axes3_y, sps_bias_in_axes3_x, sps_bias_in_axes3_y,
         sps_phi_4_t, sps_mu_3_t_2, sps_mu_3_t_3, sps_mu_3_t_4, sps_c_t, sps_c_t_2,
         sps_S_ddot_in_axes3_x, sps_S_ddot_in_axes3_y, sps_S_ddot_in_axes3_z, sps_qdd_1, sps_qdd_2_t,
-        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_d_P_3_x, sps_d_P_3_y,
-        sps_d_P_3_z, sps_M_ta_t_3, sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8,
-        sps_M_ta_t_9, sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
-        sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_M_ya_3_x, sps_M_ya_3_y,
-        sps_M_ya_3_z, sps_mu_3_o_in_axes3_z, sps_U_x, sps_U_y, sps_U_z, sps_Z_a_t, sps_Z_a_t_2,
-        sps_Z_a_t_3, sps_phi_4_in_axes3_z, sps_mu_3_in_axes3_z, sps_c_in_axes3_x, sps_c_in_axes3_y;
+        sps_Q_xx, sps_Q_yy, sps_Q_zz, sps_Q_xy, sps_Q_xz, sps_Q_yz, sps_d_P_3_x, sps_d_P_3_y,
+        sps_d_P_3_z, sps_M_ta_t, sps_M_ta_t_2, sps_M_ta_t_3, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_7,
+        sps_M_ta_t_8, sps_M_ta_t_9, sps_M_aa_t, sps_M_aa_t_2, sps_M_aa_t_3, sps_M_aa_t_4,
+        sps_M_aa_t_5, sps_M_aa_t_6, sps_M_ya_3_x, sps_M_ya_3_y, sps_M_ya_3_z, sps_mu_3_o_in_axes3_z,
+        sps_U_x, sps_U_y, sps_U_z, sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3, sps_phi_4_in_axes3_z,
+        sps_mu_3_in_axes3_z, sps_c_in_axes3_x, sps_c_in_axes3_y;
 } values_sps;
 
 INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1983,16 +1996,15 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
     const real sps_Q_t_8 = v->axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*v->sps_w_4_z;
     const real sps_Q_t_9 = v->axis_x_sps_axes3_x*sps_Q_t_3 - v->axis_y_sps_axes3_x*sps_Q_t_6;
     v->sps_Q_xx = -2*sps_Q_t_9;
+    const real sps_Q_t_10 = v->axis_y_sps_axes3_y*sps_Q_t_7 - v->axis_x_sps_axes3_y*sps_Q_t_4;
+    v->sps_Q_yy = -2*sps_Q_t_10;
+    v->sps_Q_zz = -sps_d_c_in_axes3_xx - sps_d_c_in_axes3_yy - v->sps_Q_xx - v->sps_Q_yy;
     v->sps_Q_xy = v->axis_y_sps_axes3_y*sps_Q_t_6 - v->axis_y_sps_axes3_x*sps_Q_t_7 +
         v->axis_x_sps_axes3_x*sps_Q_t_4 - v->axis_x_sps_axes3_y*sps_Q_t_3;
     v->sps_Q_xz = v->axis_y_sps_axes3_z*sps_Q_t_6 - v->axis_y_sps_axes3_x*sps_Q_t_8 -
         v->axis_x_sps_axes3_x*sps_Q_t_5 - v->axis_x_sps_axes3_z*sps_Q_t_3;
-    const real sps_Q_t_10 = v->axis_y_sps_axes3_y*sps_Q_t_7 - v->axis_x_sps_axes3_y*sps_Q_t_4;
-    v->sps_Q_yy = -2*sps_Q_t_10;
     v->sps_Q_yz = v->axis_x_sps_axes3_z*sps_Q_t_4 - v->axis_y_sps_axes3_y*sps_Q_t_8 -
         v->axis_y_sps_axes3_z*sps_Q_t_7 - v->axis_x_sps_axes3_y*sps_Q_t_5;
-    const real sps_Q_t_11 = v->axis_y_sps_axes3_z*sps_Q_t_8 + v->axis_x_sps_axes3_z*sps_Q_t_5;
-    v->sps_Q_zz = -2*sps_Q_t_11;
     /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 3 */
     v->sps_d_P_3_x = v->axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
@@ -2002,25 +2014,22 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
     v->sps_d_P_3_z = v->axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
         v->axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
     /* (M_ta) coupling block of M */
-    const real sps_M_ta_t = -v->sps_Q_xy*v->sps_q_z;
-    const real sps_M_ta_t_2 = v->sps_Q_xz*v->sps_q_y;
-    v->sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
-    v->sps_M_ta_t_4 = v->sps_Q_xx*v->sps_q_z - v->sps_Q_xz*v->sps_q_x;
-    v->sps_M_ta_t_5 = v->sps_Q_xy*v->sps_q_x - v->sps_Q_xx*v->sps_q_y;
-    v->sps_M_ta_t_6 = v->sps_Q_yz*v->sps_q_y - v->sps_Q_yy*v->sps_q_z;
-    const real sps_M_ta_t_7 = v->sps_Q_yz*v->sps_q_x;
-    v->sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
-    v->sps_M_ta_t_9 = v->sps_Q_yy*v->sps_q_x - v->sps_Q_xy*v->sps_q_y;
-    v->sps_M_ta_t_10 = v->sps_Q_zz*v->sps_q_y - v->sps_Q_yz*v->sps_q_z;
-    v->sps_M_ta_t_11 = v->sps_Q_xz*v->sps_q_z - v->sps_Q_zz*v->sps_q_x;
-    v->sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+    v->sps_M_ta_t = v->sps_Q_xz*v->sps_q_x - v->sps_Q_xx*v->sps_q_z;
+    v->sps_M_ta_t_2 = v->sps_Q_xy*v->sps_q_x - v->sps_Q_xx*v->sps_q_y;
+    v->sps_M_ta_t_3 = v->sps_Q_yz*v->sps_q_y - v->sps_Q_yy*v->sps_q_z;
+    const real sps_M_ta_t_4 = v->sps_Q_yz*v->sps_q_x;
+    v->sps_M_ta_t_5 = v->sps_Q_xy*v->sps_q_z - sps_M_ta_t_4;
+    v->sps_M_ta_t_6 = v->sps_Q_yy*v->sps_q_x - v->sps_Q_xy*v->sps_q_y;
+    v->sps_M_ta_t_7 = v->sps_Q_zz*v->sps_q_y - v->sps_Q_yz*v->sps_q_z;
+    v->sps_M_ta_t_8 = v->sps_Q_xz*v->sps_q_z - v->sps_Q_zz*v->sps_q_x;
+    v->sps_M_ta_t_9 = sps_M_ta_t_4 - v->sps_Q_xz*v->sps_q_y;
     /* (M_aa) rotational block of M */
-    v->sps_M_aa_t = v->sps_M_ta_t_10*v->sps_q_y - v->sps_M_ta_t_6*v->sps_q_z;
-    v->sps_M_aa_t_2 = v->sps_M_ta_t_11*v->sps_q_y + v->sps_M_ta_t_8*v->sps_q_z;
-    v->sps_M_aa_t_3 = v->sps_M_ta_t_12*v->sps_q_y - v->sps_M_ta_t_9*v->sps_q_z;
-    v->sps_M_aa_t_4 = v->sps_M_ta_t_4*v->sps_q_z - v->sps_M_ta_t_11*v->sps_q_x;
-    v->sps_M_aa_t_5 = v->sps_M_ta_t_5*v->sps_q_z - v->sps_M_ta_t_12*v->sps_q_x;
-    v->sps_M_aa_t_6 = v->sps_M_ta_t_9*v->sps_q_x - v->sps_M_ta_t_5*v->sps_q_y;
+    v->sps_M_aa_t = v->sps_M_ta_t_7*v->sps_q_y - v->sps_M_ta_t_3*v->sps_q_z;
+    v->sps_M_aa_t_2 = v->sps_M_ta_t_8*v->sps_q_y - v->sps_M_ta_t_5*v->sps_q_z;
+    v->sps_M_aa_t_3 = v->sps_M_ta_t_9*v->sps_q_y - v->sps_M_ta_t_6*v->sps_q_z;
+    v->sps_M_aa_t_4 = v->sps_M_ta_t*v->sps_q_z + v->sps_M_ta_t_8*v->sps_q_x;
+    v->sps_M_aa_t_5 = v->sps_M_ta_t_2*v->sps_q_z - v->sps_M_ta_t_9*v->sps_q_x;
+    v->sps_M_aa_t_6 = v->sps_M_ta_t_6*v->sps_q_x - v->sps_M_ta_t_2*v->sps_q_y;
     /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
     v->sps_M_ya_3_x = v->sps_d_P_3_z*v->sps_q_y - v->sps_d_P_3_y*v->sps_q_z;
     v->sps_M_ya_3_y = v->sps_d_P_3_x*v->sps_q_z - v->sps_d_P_3_z*v->sps_q_x;
@@ -2185,11 +2194,8 @@ INLINE void stage_sps_legs_required(const prepared *m, size_t w, size_t i, size_
         sps_Gamma_1*v->sps_v_2_in_axes3_x);
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2205,14 +2211,60 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2241,30 +2293,29 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.sps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.sps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.sps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.sps_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.sps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.sps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.sps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.sps_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.sps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.sps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.sps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.sps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.sps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.sps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.sps_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
        joint 3 */
     o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
@@ -2341,13 +2392,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2358,41 +2412,41 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2409,7 +2463,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2418,16 +2471,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2449,7 +2500,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
@@ -2457,19 +2508,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_sps[27*LEGS(LEGS_OF_sps)] = {0}, o_sps[22*LEGS(LEGS_OF_sps)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_sps[26*LEGS(LEGS_OF_sps)] CLEARED, o_sps[22*LEGS(LEGS_OF_sps)] CLEARED;
     clear(M, NV*NV);
     clear(H, NV*NU);
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         dynamics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         dynamics_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, M, Z, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2479,16 +2530,16 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_sps[22*LANES];
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_sps);
@@ -2503,31 +2554,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2542,22 +2568,21 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.sps_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.sps_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.sps_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.sps_M_ta_t_8);  /* M_ta_t */
-    gather(&terms[11*count + k], add, v.sps_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.sps_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.sps_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.sps_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.sps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v.sps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.sps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.sps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.sps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.sps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.sps_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
        degree of freedom of joint 3 */
     o[0*count + k] = v.sps_d_P_3_x;
@@ -2614,13 +2639,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2631,22 +2659,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2662,7 +2690,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2671,16 +2698,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_t = sums[10*w + k];
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2694,25 +2719,25 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_sps[21*LEGS(LEGS_OF_sps)] = {0}, o_sps[15*LEGS(LEGS_OF_sps)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_sps[20*LEGS(LEGS_OF_sps)] CLEARED, o_sps[15*LEGS(LEGS_OF_sps)] CLEARED;
     clear(M, NV*NV);
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         M_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         M_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, M, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2721,14 +2746,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, sums, o_sps);
@@ -2743,22 +2768,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2837,10 +2846,10 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[3*LEGS(LEGS_OF_sps)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_sps[6*LEGS(LEGS_OF_sps)] CLEARED, o_sps[3*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         Z_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
@@ -2861,7 +2870,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_sps[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2879,22 +2888,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2929,11 +2922,11 @@ INLINE void H_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED;
+    real o_sps[8*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         H_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -2950,7 +2943,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2963,33 +2956,6 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -3000,9 +2966,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -3032,27 +2995,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3153,13 +3113,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[8*LEGS(LEGS_OF_sps)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_sps[6*LEGS(LEGS_OF_sps)] CLEARED, o_sps[8*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
-        required_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, A, terms_sps, o_sps);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
+            required_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), 0, s, X, V, A, terms_sps,
+                o_sps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         required_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, required, H, t);
@@ -3179,7 +3142,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     clear(H, NV*NU*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3197,22 +3160,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3250,10 +3197,10 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED;
+    real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         inverse_kinematics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -3269,7 +3216,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3282,22 +3229,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3334,10 +3265,10 @@ INLINE void joint_rates_place_sps(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED;
+    real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_rates_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, o_sps);
     }
@@ -3353,7 +3284,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3366,33 +3297,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3432,10 +3336,10 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED;
+    real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_accelerations_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3451,7 +3355,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_sps[6*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3464,33 +3368,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3547,12 +3424,14 @@ INLINE void legs_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] = {0};
-    real o_sps[7*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED;
+    real o_sps[7*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
-        legs_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
+            legs_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         legs_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, leg_force, actuator, t);
@@ -3560,22 +3439,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3639,12 +3502,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[LEGS(LEGS_OF_sps)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_sps[LEGS(LEGS_OF_sps)] CLEARED, o_sps[LEGS(LEGS_OF_sps)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
-        potential_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
+            potential_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps,
+                o_sps);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         potential_place_sps(0, i, LEGS(LEGS_OF_sps), o_sps, t);
@@ -3741,8 +3607,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[9*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_sps[LEGS(LEGS_OF_sps)] CLEARED, o_sps[9*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     clear(reach, NL);
     values v;
@@ -3763,7 +3629,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
 
 int stewart_sps_M(const prepared *m, const real *X, real *M_out)
 {
-    real M[NV*NV] = {0};
+    real M[NV*NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3788,7 +3654,7 @@ INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 
 int stewart_sps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 {
-    real Z[NV] = {0};
+    real Z[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3837,7 +3703,7 @@ INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 
 int stewart_sps_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 {
-    real q[NJ] = {0};
+    real q[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -3862,7 +3728,7 @@ INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_o
 
 int stewart_sps_joint_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd[NJ] = {0};
+    real qd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -3890,7 +3756,7 @@ INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, r
 int stewart_sps_joint_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd[NJ] = {0};
+    real qdd[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -3919,7 +3785,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int stewart_sps_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0};
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4129,8 +3995,8 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, unsure_tau[1] =
-        {0}, work[NU*PADDED(NU)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, extend_1[12] CLEARED, subtract_1[NV] CLEARED,
+        unsure_tau[1] = {0}, work[NU*PADDED(NU)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4181,8 +4047,8 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, extend_1[12] = {0}, add_1[NV]
-        = {0}, subtract_1[NV] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, extend_1[12] CLEARED,
+        add_1[NV] CLEARED, subtract_1[NV] CLEARED, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4245,9 +4111,9 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
     static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
-    real clear_at_1[NV] = {0}, M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0},
-        add_1[NV] = {0}, extend_1[12] = {0}, subtract_1[NV] = {0}, take_columns_1[6*NV] = {0},
-        negative_1[6] = {0}, solve_1[6] = {0}, unsure_solve_1[1] = {0}, completed[NV] = {0},
+    real clear_at_1[NV] CLEARED, M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0},
+        add_1[NV] CLEARED, extend_1[12] CLEARED, subtract_1[NV] CLEARED, take_columns_1[6*NV] = {0},
+        negative_1[6] CLEARED, solve_1[6] CLEARED, unsure_solve_1[1] = {0}, completed[NV] CLEARED,
         work[6*PADDED(6)];
     status_flags why;
     start(1, &why);
@@ -4343,7 +4209,7 @@ int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2, 3, 4, 5};
-    real solve_1[NU] = {0}, leg_force[3*NL] = {0}, actuator[18] = {0}, forces[3*NL] = {0};
+    real solve_1[NU] = {0}, leg_force[3*NL] CLEARED, actuator[18] CLEARED, forces[3*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4360,7 +4226,7 @@ int stewart_sps_leg_reactions(const prepared *m, const real *X, const real *V, c
 int stewart_sps_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4381,8 +4247,8 @@ int stewart_sps_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real H[NV*NU] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0}, choose_length_1[1] = {0},
-        divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED, choose_length_1[1]
+        CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4413,9 +4279,9 @@ int stewart_sps_manipulability(const prepared *m, const real *X, real *measure_o
     *isotropy_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, measure[1]
-        = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NU] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4447,9 +4313,9 @@ int stewart_sps_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, spread_1[1]
-        = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED, subtract_1[1]
+        CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, singular_values_1[NU] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4480,7 +4346,7 @@ int stewart_sps_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_3[6] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_3[6] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4565,7 +4431,7 @@ int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4578,7 +4444,7 @@ int stewart_sps_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int stewart_sps_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4591,7 +4457,7 @@ int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_ou
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,
         17, 18, 19, 20, 21, 22, 23};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4606,7 +4472,7 @@ int stewart_sps_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int stewart_sps_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4620,7 +4486,7 @@ int stewart_sps_within_limits(const prepared *m, const real *X, real *within_out
 
 int stewart_sps_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4631,7 +4497,7 @@ int stewart_sps_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int stewart_sps_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4643,7 +4509,7 @@ int stewart_sps_actuator_rates(const prepared *m, const real *X, const real *V, 
 int stewart_sps_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4655,7 +4521,7 @@ int stewart_sps_actuator_accelerations(const prepared *m, const real *X, const r
 int stewart_sps_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4678,7 +4544,7 @@ int stewart_sps_rotation(const real *X, real *R_out)
 
 int stewart_sps_pose(const real *t, const real *R, real *X_out)
 {
-    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
+    real quaternion_of_rotation_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(3, t, 9, R, why.invalid);
@@ -4707,7 +4573,7 @@ int stewart_sps_X_dot(const real *X, const real *V, real *X_dot_out)
 
 int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 {
-    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] = {0};
+    real quaternion_of_rpy_1[4] = {0}, join_1[7] = {0}, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(3, t, 3, rpy, why.invalid);
@@ -4721,8 +4587,8 @@ int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int stewart_sps_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] = {0}, join_1[7] = {0}, X_moved[NQ] =
-        {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[6] CLEARED, join_1[7] = {0}, X_moved[NQ]
+        = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4744,8 +4610,8 @@ int stewart_sps_retract(const real *X, const real *step, real *X_moved_out)
 
 int stewart_sps_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, subtract_2[6] = {0}, join_1[6] = {0}, step[NV]
-        = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, subtract_2[6] CLEARED, join_1[6] = {0},
+        step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4767,8 +4633,8 @@ int stewart_sps_difference(const real *X0, const real *X1, real *step_out)
 
 int stewart_sps_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_2[12] = {0}, scale_1[12] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, add_2[6] =
-        {0}, join_3[7] = {0}, X[NQ] = {0};
+    real join_2[12] = {0}, scale_1[12] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, add_2[6]
+        CLEARED, join_3[7] = {0}, X[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -116,7 +116,7 @@ typedef struct {
             sps_potential_t_4[8], sps_potential_t_5[8], sps_potential_t_6[8];
     stewart_sps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } stewart_sps_model;
@@ -135,12 +135,12 @@ extern const char *const stewart_sps_ACTUATOR_NAMES[STEWART_SPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *model);
 
-/* Inertia matrix M. 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1206 mul, 850 add, 18 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *M);
 size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1278 mul, 924 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1275 mul, 924 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_sps_Z(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *Z);
@@ -175,7 +175,7 @@ size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, siz
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 2148 mul, 1569 add, 18 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2127 mul, 1570 add, 18 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
@@ -184,9 +184,9 @@ size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, cons
     int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. Rows of passive extra coordinates hold
-   where complete_acceleration was used. 1347 mul, 1005 add, 18 div, 12 sqrt, 12 trig; the
-   solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
-   tau (NU). */
+   where complete_acceleration was used. 1338 mul, 999 add, 18 div, 12 sqrt, 12 trig; the solution
+   of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU).
+   */
 int stewart_sps_inverse_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
     stewart_sps_real *tau);
@@ -194,7 +194,7 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2148 mul, 1569 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2127 mul, 1570 add, 18 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
@@ -273,7 +273,7 @@ int stewart_sps_dissipation(const stewart_sps_model *model, const stewart_sps_re
 size_t stewart_sps_dissipation_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1206 mul, 850 add, 18 div, 12 sqrt, 12 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_sps_momentum(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *momentum);

@@ -696,6 +696,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -707,9 +708,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_sps,
         (sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -727,8 +728,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_sps,
         (sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -744,9 +745,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_sps,
         (sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
@@ -1875,7 +1876,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 2148 mul, 1569 add, 18 div, 12 sqrt, 12 trig
+# dynamics: 2127 mul, 1570 add, 18 div, 12 sqrt, 12 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -1883,8 +1884,8 @@ def _run_dynamics(m, X, V):
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1951,13 +1952,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1973,11 +1973,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
-        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
-        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz, Z_t_sps_x,
-        Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z,
-    ) = [0.0] * 27
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_yy, M_ta_zz,
+        M_ta_sps_xy, M_ta_sps_xz, M_ta_sps_yx, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_aa_sps_xx,
+        M_aa_sps_xy, M_aa_sps_xz, M_aa_t, M_aa_sps_yz, M_aa_sps_zz, Z_t_sps_x, Z_t_sps_y,
+        Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -2345,6 +2345,9 @@ def _run_dynamics(m, X, V):
         sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z
         sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6
         sps_Q_xx = -2.0*sps_Q_t_9
+        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
+        sps_Q_yy = -2.0*sps_Q_t_10
+        sps_Q_zz = -sps_Q_xx - sps_Q_yy - sps_d_c_in_axes3_xx - sps_d_c_in_axes3_yy
         sps_Q_xy = (
         axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 - axis_x_sps_axes3_y*sps_Q_t_3
             - axis_y_sps_axes3_x*sps_Q_t_7
@@ -2353,14 +2356,10 @@ def _run_dynamics(m, X, V):
         axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 - axis_x_sps_axes3_z*sps_Q_t_3
             - axis_y_sps_axes3_x*sps_Q_t_8
         )
-        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
-        sps_Q_yy = -2.0*sps_Q_t_10
         sps_Q_yz = (
         axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 - axis_y_sps_axes3_y*sps_Q_t_8
             - axis_y_sps_axes3_z*sps_Q_t_7
         )
-        sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8
-        sps_Q_zz = -2.0*sps_Q_t_11
         # (sps-U) velocity and gravity terms of the leg force
         sps_U_x = (
         sps_phi_4_o_in_axes3_z*sps_w_4_x - axis_x_sps_axes3_x*sps_c_o_in_axes3_x -
@@ -2385,25 +2384,22 @@ def _run_dynamics(m, X, V):
         axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy
         )
         # (M_ta) coupling block of M
-        sps_M_ta_t = -sps_Q_xy*sps_q_z
-        sps_M_ta_t_2 = sps_Q_xz*sps_q_y
-        sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2
-        sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x
-        sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
-        sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
-        sps_M_ta_t_7 = sps_Q_yz*sps_q_x
-        sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7
-        sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
-        sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
-        sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
-        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
+        sps_M_ta_t = sps_Q_xz*sps_q_x - sps_Q_xx*sps_q_z
+        sps_M_ta_t_2 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
+        sps_M_ta_t_3 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
+        sps_M_ta_t_4 = sps_Q_yz*sps_q_x
+        sps_M_ta_t_5 = sps_Q_xy*sps_q_z - sps_M_ta_t_4
+        sps_M_ta_t_6 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
+        sps_M_ta_t_7 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
+        sps_M_ta_t_8 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
+        sps_M_ta_t_9 = sps_M_ta_t_4 - sps_Q_xz*sps_q_y
         # (M_aa) rotational block of M
-        sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z
-        sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z
-        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z
-        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x
-        sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x
-        sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y
+        sps_M_aa_t = sps_M_ta_t_7*sps_q_y - sps_M_ta_t_3*sps_q_z
+        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_y - sps_M_ta_t_5*sps_q_z
+        sps_M_aa_t_3 = sps_M_ta_t_9*sps_q_y - sps_M_ta_t_6*sps_q_z
+        sps_M_aa_t_4 = sps_M_ta_t*sps_q_z + sps_M_ta_t_8*sps_q_x
+        sps_M_aa_t_5 = sps_M_ta_t_2*sps_q_z - sps_M_ta_t_9*sps_q_x
+        sps_M_aa_t_6 = sps_M_ta_t_6*sps_q_x - sps_M_ta_t_2*sps_q_y
         # (Z_a) rotational part of Z
         sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z
         sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x
@@ -2429,20 +2425,19 @@ def _run_dynamics(m, X, V):
         M_tt_yz += sps_Q_yz
         M_tt_sps_zz += sps_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += sps_M_ta_t_3
-        M_ta_sps_xy += sps_M_ta_t_4
-        M_ta_sps_xz += sps_M_ta_t_5
-        M_ta_sps_yx += sps_M_ta_t_6
-        M_ta_t += sps_M_ta_t_8
-        M_ta_sps_yz += sps_M_ta_t_9
-        M_ta_sps_zx += sps_M_ta_t_10
-        M_ta_sps_zy += sps_M_ta_t_11
-        M_ta_zz += sps_M_ta_t_12
+        M_ta_yy += sps_M_ta_t_5
+        M_ta_zz += sps_M_ta_t_9
+        M_ta_sps_xy += -sps_M_ta_t
+        M_ta_sps_xz += sps_M_ta_t_2
+        M_ta_sps_yx += sps_M_ta_t_3
+        M_ta_sps_yz += sps_M_ta_t_6
+        M_ta_sps_zx += sps_M_ta_t_7
+        M_ta_sps_zy += sps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_sps_xx += sps_M_aa_t
         M_aa_sps_xy += sps_M_aa_t_2
         M_aa_sps_xz += sps_M_aa_t_3
-        M_aa_sps_yy += sps_M_aa_t_4
+        M_aa_t += sps_M_aa_t_4
         M_aa_sps_yz += sps_M_aa_t_5
         M_aa_sps_zz += sps_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2484,6 +2479,7 @@ def _run_dynamics(m, X, V):
     M_tt_yy = M_tt_sps_yy + m_star
     M_tt_zz = M_tt_sps_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_sps_xy + h_star_z
     M_ta_xz = M_ta_sps_xz - h_star_y
     M_ta_yx = M_ta_sps_yx - h_star_z
@@ -2494,7 +2490,7 @@ def _run_dynamics(m, X, V):
     M_aa_xx = J_star_xx + M_aa_sps_xx
     M_aa_xy = J_star_xy + M_aa_sps_xy
     M_aa_xz = J_star_xz + M_aa_sps_xz
-    M_aa_yy = J_star_yy + M_aa_sps_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_sps_yz
     M_aa_zz = J_star_zz + M_aa_sps_zz
     # (Z_t) translational part of Z
@@ -2524,8 +2520,8 @@ def _run_dynamics(m, X, V):
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -M_ta_t
-    out_M[49] = -M_ta_t
+    out_M[16] = M_ta_yy
+    out_M[49] = M_ta_yy
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
@@ -2555,7 +2551,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig
+# M: 1206 mul, 850 add, 18 div, 12 sqrt, 12 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     sin = m.sin
@@ -2563,7 +2559,7 @@ def _run_M(m, X):
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -2616,18 +2612,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
-        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
-        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz,
-    ) = [0.0] * 21
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_yy, M_ta_zz,
+        M_ta_sps_xy, M_ta_sps_xz, M_ta_sps_yx, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_aa_sps_xx,
+        M_aa_sps_xy, M_aa_sps_xz, M_aa_t, M_aa_sps_yz, M_aa_sps_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
@@ -2819,6 +2814,9 @@ def _run_M(m, X):
         sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z
         sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6
         sps_Q_xx = -2.0*sps_Q_t_9
+        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
+        sps_Q_yy = -2.0*sps_Q_t_10
+        sps_Q_zz = -sps_Q_xx - sps_Q_yy - sps_d_c_in_axes3_xx - sps_d_c_in_axes3_yy
         sps_Q_xy = (
         axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 - axis_x_sps_axes3_y*sps_Q_t_3
             - axis_y_sps_axes3_x*sps_Q_t_7
@@ -2827,14 +2825,10 @@ def _run_M(m, X):
         axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 - axis_x_sps_axes3_z*sps_Q_t_3
             - axis_y_sps_axes3_x*sps_Q_t_8
         )
-        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
-        sps_Q_yy = -2.0*sps_Q_t_10
         sps_Q_yz = (
         axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 - axis_y_sps_axes3_y*sps_Q_t_8
             - axis_y_sps_axes3_z*sps_Q_t_7
         )
-        sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8
-        sps_Q_zz = -2.0*sps_Q_t_11
         # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
         sps_d_P_3_x = (
         axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
@@ -2846,25 +2840,22 @@ def _run_M(m, X):
         axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy
         )
         # (M_ta) coupling block of M
-        sps_M_ta_t = -sps_Q_xy*sps_q_z
-        sps_M_ta_t_2 = sps_Q_xz*sps_q_y
-        sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2
-        sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x
-        sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
-        sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
-        sps_M_ta_t_7 = sps_Q_yz*sps_q_x
-        sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7
-        sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
-        sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
-        sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
-        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
+        sps_M_ta_t = sps_Q_xz*sps_q_x - sps_Q_xx*sps_q_z
+        sps_M_ta_t_2 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
+        sps_M_ta_t_3 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
+        sps_M_ta_t_4 = sps_Q_yz*sps_q_x
+        sps_M_ta_t_5 = sps_Q_xy*sps_q_z - sps_M_ta_t_4
+        sps_M_ta_t_6 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
+        sps_M_ta_t_7 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
+        sps_M_ta_t_8 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
+        sps_M_ta_t_9 = sps_M_ta_t_4 - sps_Q_xz*sps_q_y
         # (M_aa) rotational block of M
-        sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z
-        sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z
-        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z
-        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x
-        sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x
-        sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y
+        sps_M_aa_t = sps_M_ta_t_7*sps_q_y - sps_M_ta_t_3*sps_q_z
+        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_y - sps_M_ta_t_5*sps_q_z
+        sps_M_aa_t_3 = sps_M_ta_t_9*sps_q_y - sps_M_ta_t_6*sps_q_z
+        sps_M_aa_t_4 = sps_M_ta_t*sps_q_z + sps_M_ta_t_8*sps_q_x
+        sps_M_aa_t_5 = sps_M_ta_t_2*sps_q_z - sps_M_ta_t_9*sps_q_x
+        sps_M_aa_t_6 = sps_M_ta_t_6*sps_q_x - sps_M_ta_t_2*sps_q_y
         # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
         sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z
         sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x
@@ -2882,20 +2873,19 @@ def _run_M(m, X):
         M_tt_yz += sps_Q_yz
         M_tt_sps_zz += sps_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += sps_M_ta_t_3
-        M_ta_sps_xy += sps_M_ta_t_4
-        M_ta_sps_xz += sps_M_ta_t_5
-        M_ta_sps_yx += sps_M_ta_t_6
-        M_ta_t += sps_M_ta_t_8
-        M_ta_sps_yz += sps_M_ta_t_9
-        M_ta_sps_zx += sps_M_ta_t_10
-        M_ta_sps_zy += sps_M_ta_t_11
-        M_ta_zz += sps_M_ta_t_12
+        M_ta_yy += sps_M_ta_t_5
+        M_ta_zz += sps_M_ta_t_9
+        M_ta_sps_xy += -sps_M_ta_t
+        M_ta_sps_xz += sps_M_ta_t_2
+        M_ta_sps_yx += sps_M_ta_t_3
+        M_ta_sps_yz += sps_M_ta_t_6
+        M_ta_sps_zx += sps_M_ta_t_7
+        M_ta_sps_zy += sps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_sps_xx += sps_M_aa_t
         M_aa_sps_xy += sps_M_aa_t_2
         M_aa_sps_xz += sps_M_aa_t_3
-        M_aa_sps_yy += sps_M_aa_t_4
+        M_aa_t += sps_M_aa_t_4
         M_aa_sps_yz += sps_M_aa_t_5
         M_aa_sps_zz += sps_M_aa_t_6
         # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 3
@@ -2919,6 +2909,7 @@ def _run_M(m, X):
     M_tt_yy = M_tt_sps_yy + m_star
     M_tt_zz = M_tt_sps_zz + m_star
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_sps_xy + h_star_z
     M_ta_xz = M_ta_sps_xz - h_star_y
     M_ta_yx = M_ta_sps_yx - h_star_z
@@ -2929,7 +2920,7 @@ def _run_M(m, X):
     M_aa_xx = J_star_xx + M_aa_sps_xx
     M_aa_xy = J_star_xy + M_aa_sps_xy
     M_aa_xz = J_star_xz + M_aa_sps_xz
-    M_aa_yy = J_star_yy + M_aa_sps_yy
+    M_aa_yy = J_star_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_sps_yz
     M_aa_zz = J_star_zz + M_aa_sps_zz
     # (M_tt) translational block of M
@@ -2951,8 +2942,8 @@ def _run_M(m, X):
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -M_ta_t
-    out_M[49] = -M_ta_t
+    out_M[16] = M_ta_yy
+    out_M[49] = M_ta_yy
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
@@ -2974,7 +2965,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1278 mul, 924 add, 18 div, 12 sqrt, 12 trig
+# Z: 1275 mul, 924 add, 18 div, 12 sqrt, 12 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     sin = m.sin
@@ -2982,8 +2973,8 @@ def _run_Z(m, X, V):
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3048,13 +3039,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3483,7 +3473,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1347 mul, 1005 add, 18 div, 12 sqrt, 12 trig
+# required: 1338 mul, 999 add, 18 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3583,9 +3573,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -3609,27 +3596,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_sps_x, R_a_sps_y, R_a_sps_z = [0.0] * 6
     for leg, k in legs[0]:
         (

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -78,7 +89,6 @@ enum {
 #define LEAST_2 (TOLERANCE*R(1.38293))
 #define LEAST_3 (TOLERANCE*TOLERANCE*R(1.8225000000000002))
 #define LEAST_4 (TOLERANCE*1)
-#define LEAST_5 (TOLERANCE*R(1.35))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -1012,6 +1022,8 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
     const real J_star_t_12 = R(0.5)*J_star_t_11;
     const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
+    const real J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
@@ -1031,6 +1043,7 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_12);
     KEEP(J_star_t_14);
+    KEEP(J_star_t_15);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1772,8 +1785,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1843,16 +1856,15 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_6 = m->J_star_t_14*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
     const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
     v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
+    v->J_star_zz = m->J_star_t_15 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_6*v->R_xz;
-    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_8;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_6*v->R_yz;
-    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_9;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1884,7 +1896,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1901,28 +1913,22 @@ typedef struct {
         tube_n_m2_in_axes2_y, tube_end_p2_in_axes2_y, tube_end_p3_in_axes2_z, tube_n_m3_in_axes2_z,
         tube_f_c1_t, tube_m1_c1_t, tube_m3_c1_t, tube_m1_c2_t, tube_m3_c2, tube_mu_c1_x, tube_mu_c1_y,
         tube_mu_c1_z, tube_mu_c2_x, tube_mu_c2_y, tube_mu_c2_z, tube_size_c3, inv_tube_size_c3,
-        tube_mu1_c3, tube_mu3_c3_t, tube_mu_c3_x, tube_mu_c3_y, tube_mu_c3_z, tube_w_1_t_13,
-        inv_tube_w_1_t_13, tube_w_1_t_14, tube_w_1_t_15, tube_w_1_t_16, tube_w_1_t_17, tube_w_1_t_21,
-        tube_w_1_t_25, tube_w_1_t_29, tube_w_1_t_33, inv_tube_w_1_t_33, tube_w_1_t_34, tube_w_1_t_35,
-        tube_w_1_t_36, tube_w_1_t_37, tube_w_1_t_41, tube_w_1_t_45, tube_w_1_t_49, inv_tube_w_1_t_49,
-        tube_w_1_t_50, tube_w_1_t_51, tube_w_1_t_52, tube_w_1_t_53, tube_w_1_t_58, tube_w_1_t_63,
-        inv_tube_w_1_t_63, tube_w_1_t_64, tube_w_1_t_65, tube_w_1_t_66, tube_w_1_t_67, tube_w_1_t_68,
-        tube_w_1_t_69, tube_w_1_t_75, inv_tube_w_1_t_75, tube_w_1_t_76, tube_w_1_t_77, tube_m1_w_1_t,
-        tube_m2_w_1_t, tube_m3_w_1_t, tube_end_p1_in_axes2_x, tube_end_p2_in_axes2_z,
+        tube_mu1_c3, tube_mu3_c3_t, tube_mu_c3_x, tube_mu_c3_y, tube_mu_c3_z, tube_w_1_t,
+        tube_w_1_t_2, tube_w_1_t_3, tube_m1_w_1_t, inv_tube_w_1_t_3, tube_m2_w_1_t, tube_m3_w_1_t,
+        tube_m2_w_2_t, tube_qd_1_t, inv_tube_qd_1_t, tube_end_p1_in_axes2_x, tube_end_p2_in_axes2_z,
         tube_end_p3_in_axes2_y, tube_g_in_axes2_z, tube_g_in_axes2_x, tube_g_in_axes2_y,
         tube_mu_2_t_4, tube_mu_2_t_5, tube_mu_2_t_6, tube_Hk_a_1_x, tube_Hk_a_1_y, tube_Hk_a_1_z,
         tube_Hk_a_2_x, tube_Hk_a_2_y, tube_Hk_a_2_z, tube_etad_1_t, tube_etad_2_t, tube_etad_3_t,
-        tube_S_dot_in_axes2_x, tube_qd_1, tube_qd_2, tube_W_2_in_axes2_yz, tube_W_2_in_axes2_xz,
-        tube_W_2_t_3, tube_W_2_in_axes2_xy, tube_u_1_x, tube_u_1_y, tube_u_1_z, tube_bias_t,
-        tube_bias_t_2, tube_bias_t_4, tube_bias_t_5, tube_bias_in_axes2_y, tube_bias_in_axes2_z,
-        tube_rel_o_in_axes2_y, tube_rel_o_in_axes2_z, tube_nu_1, tube_nu_2, tube_nu_3, tube_f_3_t_2,
+        tube_S_dot_in_axes2_x, tube_qd_1_t_2, tube_qd_2, tube_W_2_in_axes2_yz, tube_W_2_in_axes2_xx,
+        tube_W_2_in_axes2_xy, tube_u_1_x, tube_u_1_y, tube_u_1_z, tube_zeta_2_in_axes2_y, tube_bias_t,
+        tube_bias_t_2, tube_bias_t_4, tube_bias_t_5, tube_nu_1, tube_nu_2, tube_nu_3, tube_f_3_t_2,
         tube_f_3_t_3, tube_f_3_t_4, tube_mu_2_t, tube_mu_2_t_2, tube_mu_2_t_3, tube_S_ddot_in_axes2_x,
-        tube_qdd_1, tube_qdd_2, tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz,
-        tube_M_ta_t_13, tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17,
-        tube_M_ta_t_18, tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10,
-        tube_M_aa_t_11, tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15, tube_U_x,
-        tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3, tube_c_x, tube_c_y, tube_c_z,
-        tube_c_m_x, tube_c_m_y, tube_c_m_z;
+        tube_qdd_1_t, tube_qdd_2, tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz,
+        tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8, tube_M_ta_t_9,
+        tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t_8, tube_M_aa_t_9, tube_M_aa_t_10,
+        tube_M_aa_t_11, tube_M_aa_t_12, tube_M_aa_t_13, tube_U_x, tube_U_y, tube_U_z, tube_Z_a_t,
+        tube_Z_a_t_2, tube_Z_a_t_3, tube_gamma_c1, tube_gamma_c2, tube_gamma_c3, tube_c_t, tube_c_t_2,
+        tube_c_t_3, tube_c_m_x, tube_c_m_y, tube_c_m_z;
 } values_tube;
 
 INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -2124,109 +2130,23 @@ INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const 
         v->axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
         v->axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
     /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_5;
-    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-    const real tube_w_1_t_4 = R(1.35)*v->tube_n_m1_in_axes2_z;
-    const real tube_w_1_t_5 = R(1.35)*v->tube_n_m3_in_axes2_z;
-    const real tube_w_1_t_6 = R(1.35)*v->tube_m1_c1_t;
-    const real tube_w_1_t_7 = R(1.35)*v->tube_m3_c1_t;
-    const real tube_w_1_t_8 = R(1.35)*v->tube_m1_c2_t;
-    const real tube_w_1_t_9 = R(1.35)*v->tube_m3_c2;
-    const real tube_w_1_t_10 = R(1.35)*v->tube_mu1_c3;
-    const real tube_w_1_t_11 = R(1.35)*v->inv_tube_size_c3;
-    const real tube_w_1_t_12 = R(1.35)*v->tube_mu3_c3_t;
-    v->tube_w_1_t_13 = root(v->tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
-        tube_w_1_t_5*tube_w_1_t_5);
-    v->inv_tube_w_1_t_13 = 1/v->tube_w_1_t_13;
-    v->tube_w_1_t_14 = v->inv_tube_w_1_t_13*v->tube_q_3;
-    v->tube_w_1_t_15 = v->inv_tube_w_1_t_13*tube_w_1_t_4;
-    v->tube_w_1_t_16 = v->inv_tube_w_1_t_13*tube_w_1_t_5;
-    v->tube_w_1_t_17 = v->tube_w_1_t_15*tube_w_1_t_6 + v->tube_w_1_t_16*tube_w_1_t_7 -
-        v->tube_w_1_t_14;
-    const real tube_w_1_t_18 = 1 + v->tube_w_1_t_14*v->tube_w_1_t_17;
-    const real tube_w_1_t_19 = v->tube_w_1_t_15*v->tube_w_1_t_17 - tube_w_1_t_6;
-    const real tube_w_1_t_20 = v->tube_w_1_t_16*v->tube_w_1_t_17 - tube_w_1_t_7;
-    v->tube_w_1_t_21 = v->tube_w_1_t_15*tube_w_1_t_8 - v->tube_w_1_t_16*tube_w_1_t_9;
-    const real tube_w_1_t_22 = v->tube_w_1_t_14*v->tube_w_1_t_21;
-    const real tube_w_1_t_23 = v->tube_w_1_t_15*v->tube_w_1_t_21 - tube_w_1_t_8;
-    const real tube_w_1_t_24 = tube_w_1_t_9 + v->tube_w_1_t_16*v->tube_w_1_t_21;
-    v->tube_w_1_t_25 = tube_w_1_t_10*v->tube_w_1_t_15 - tube_w_1_t_12*v->tube_w_1_t_16;
-    const real tube_w_1_t_26 = v->tube_w_1_t_14*v->tube_w_1_t_25;
-    const real tube_w_1_t_27 = tube_w_1_t_10 - v->tube_w_1_t_15*v->tube_w_1_t_25;
-    const real tube_w_1_t_28 = tube_w_1_t_12 + v->tube_w_1_t_16*v->tube_w_1_t_25;
-    v->tube_w_1_t_29 = tube_w_1_t*v->tube_w_1_t_15 - v->tube_w_1_t_16*tube_w_1_t_3;
-    const real tube_w_1_t_30 = v->tube_w_1_t_14*v->tube_w_1_t_29;
-    const real tube_w_1_t_31 = tube_w_1_t - v->tube_w_1_t_15*v->tube_w_1_t_29;
-    const real tube_w_1_t_32 = tube_w_1_t_3 + v->tube_w_1_t_16*v->tube_w_1_t_29;
-    v->tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-        tube_w_1_t_20*tube_w_1_t_20);
-    v->inv_tube_w_1_t_33 = 1/v->tube_w_1_t_33;
-    v->tube_w_1_t_34 = v->inv_tube_w_1_t_33*tube_w_1_t_18;
-    v->tube_w_1_t_35 = v->inv_tube_w_1_t_33*tube_w_1_t_19;
-    v->tube_w_1_t_36 = v->inv_tube_w_1_t_33*tube_w_1_t_20;
-    v->tube_w_1_t_37 = tube_w_1_t_22*v->tube_w_1_t_34 + tube_w_1_t_23*v->tube_w_1_t_35 +
-        tube_w_1_t_24*v->tube_w_1_t_36;
-    const real tube_w_1_t_38 = tube_w_1_t_22 - v->tube_w_1_t_34*v->tube_w_1_t_37;
-    const real tube_w_1_t_39 = tube_w_1_t_23 - v->tube_w_1_t_35*v->tube_w_1_t_37;
-    const real tube_w_1_t_40 = tube_w_1_t_24 - v->tube_w_1_t_36*v->tube_w_1_t_37;
-    v->tube_w_1_t_41 = tube_w_1_t_26*v->tube_w_1_t_34 + tube_w_1_t_28*v->tube_w_1_t_36 -
-        tube_w_1_t_27*v->tube_w_1_t_35;
-    const real tube_w_1_t_42 = tube_w_1_t_26 - v->tube_w_1_t_34*v->tube_w_1_t_41;
-    const real tube_w_1_t_43 = tube_w_1_t_27 + v->tube_w_1_t_35*v->tube_w_1_t_41;
-    const real tube_w_1_t_44 = tube_w_1_t_28 - v->tube_w_1_t_36*v->tube_w_1_t_41;
-    v->tube_w_1_t_45 = tube_w_1_t_30*v->tube_w_1_t_34 + tube_w_1_t_32*v->tube_w_1_t_36 -
-        tube_w_1_t_31*v->tube_w_1_t_35;
-    const real tube_w_1_t_46 = tube_w_1_t_30 - v->tube_w_1_t_34*v->tube_w_1_t_45;
-    const real tube_w_1_t_47 = tube_w_1_t_31 + v->tube_w_1_t_35*v->tube_w_1_t_45;
-    const real tube_w_1_t_48 = tube_w_1_t_32 - v->tube_w_1_t_36*v->tube_w_1_t_45;
-    v->tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-        tube_w_1_t_40*tube_w_1_t_40);
-    v->inv_tube_w_1_t_49 = 1/v->tube_w_1_t_49;
-    v->tube_w_1_t_50 = v->inv_tube_w_1_t_49*tube_w_1_t_38;
-    v->tube_w_1_t_51 = v->inv_tube_w_1_t_49*tube_w_1_t_39;
-    v->tube_w_1_t_52 = v->inv_tube_w_1_t_49*tube_w_1_t_40;
-    v->tube_w_1_t_53 = tube_w_1_t_42*v->tube_w_1_t_50 + tube_w_1_t_44*v->tube_w_1_t_52 -
-        tube_w_1_t_43*v->tube_w_1_t_51;
-    const real tube_w_1_t_54 = v->tube_w_1_t_50*v->tube_w_1_t_53 - tube_w_1_t_42;
-    const real tube_w_1_t_55 = v->inv_tube_w_1_t_49*v->tube_w_1_t_53;
-    const real tube_w_1_t_56 = tube_w_1_t_43 + v->tube_w_1_t_51*v->tube_w_1_t_53;
-    const real tube_w_1_t_57 = v->tube_w_1_t_52*v->tube_w_1_t_53 - tube_w_1_t_44;
-    v->tube_w_1_t_58 = tube_w_1_t_46*v->tube_w_1_t_50 - v->inv_tube_w_1_t_49*tube_root_1 +
-        tube_w_1_t_48*v->tube_w_1_t_52 - tube_w_1_t_47*v->tube_w_1_t_51;
-    const real tube_w_1_t_59 = v->tube_w_1_t_50*v->tube_w_1_t_58 - tube_w_1_t_46;
-    const real tube_w_1_t_60 = tube_root_1 + v->inv_tube_w_1_t_49*v->tube_w_1_t_58;
-    const real tube_w_1_t_61 = tube_w_1_t_47 + v->tube_w_1_t_51*v->tube_w_1_t_58;
-    const real tube_w_1_t_62 = v->tube_w_1_t_52*v->tube_w_1_t_58 - tube_w_1_t_48;
-    v->tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-        tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-        tube_w_1_t_57*tube_w_1_t_57);
-    v->inv_tube_w_1_t_63 = 1/v->tube_w_1_t_63;
-    v->tube_w_1_t_64 = v->inv_tube_w_1_t_63*tube_w_1_t_54;
-    v->tube_w_1_t_65 = v->inv_tube_w_1_t_63*tube_w_1_t_55;
-    v->tube_w_1_t_66 = v->inv_tube_w_1_t_63*tube_w_1_t_56;
-    v->tube_w_1_t_67 = v->inv_tube_w_1_t_63*tube_w_1_t_11;
-    v->tube_w_1_t_68 = v->inv_tube_w_1_t_63*tube_w_1_t_57;
-    v->tube_w_1_t_69 = tube_w_1_t_59*v->tube_w_1_t_64 + tube_w_1_t_60*v->tube_w_1_t_65 +
-        tube_w_1_t_61*v->tube_w_1_t_66 + tube_w_1_t_62*v->tube_w_1_t_68 -
-        tube_w_1_t_2*v->tube_w_1_t_67;
-    const real tube_w_1_t_70 = tube_w_1_t_59 - v->tube_w_1_t_64*v->tube_w_1_t_69;
-    const real tube_w_1_t_71 = tube_w_1_t_60 - v->tube_w_1_t_65*v->tube_w_1_t_69;
-    const real tube_w_1_t_72 = tube_w_1_t_61 - v->tube_w_1_t_66*v->tube_w_1_t_69;
-    const real tube_w_1_t_73 = tube_w_1_t_2 + v->tube_w_1_t_67*v->tube_w_1_t_69;
-    const real tube_w_1_t_74 = tube_w_1_t_62 - v->tube_w_1_t_68*v->tube_w_1_t_69;
-    v->tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-        tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-        tube_w_1_t_74*tube_w_1_t_74);
-    v->inv_tube_w_1_t_75 = 1/v->tube_w_1_t_75;
-    v->tube_w_1_t_76 = v->inv_tube_w_1_t_75*tube_w_1_t_70;
-    v->tube_w_1_t_77 = v->inv_tube_w_1_t_75*tube_w_1_t_71;
+    v->tube_w_1_t = v->inv_tube_size_c3*tube_n_m3_t_5 + v->tube_mu3_c3_t*tube_n_m2_t_5;
+    v->tube_w_1_t_2 = v->inv_tube_size_c3*tube_n_m1_in_axes1_z + v->tube_mu1_c3*tube_n_m2_t_5;
+    v->tube_w_1_t_3 = v->tube_n_m1_in_axes2_z*v->tube_w_1_t +
+        v->tube_n_m3_in_axes2_z*v->tube_w_1_t_2;
     /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    v->tube_m1_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_72;
+    v->tube_m1_w_1_t = v->inv_tube_size_c3*v->tube_n_m3_in_axes2_z;
+    v->inv_tube_w_1_t_3 = 1/v->tube_w_1_t_3;
     /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    v->tube_m2_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_73;
+    v->tube_m2_w_1_t = v->tube_mu1_c3*v->tube_n_m3_in_axes2_z +
+        v->tube_mu3_c3_t*v->tube_n_m1_in_axes2_z;
     /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-    v->tube_m3_w_1_t = v->inv_tube_w_1_t_75*tube_w_1_t_74;
+    v->tube_m3_w_1_t = v->inv_tube_size_c3*v->tube_n_m1_in_axes2_z;
+    /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    v->tube_m2_w_2_t = v->tube_mu3_c3_t*tube_n_m1_in_axes1_z - v->tube_mu1_c3*tube_n_m3_t_5;
+    /* (tube-qd_1) rate of joint 1 */
+    v->tube_qd_1_t = v->inv_tube_size_c3*v->tube_f_c1_t + v->tube_m2_w_1_t*tube_n_m2_t_5;
+    v->inv_tube_qd_1_t = 1/v->tube_qd_1_t;
     /* (tube-nd_m1) rate of moment direction 1 */
     v->tube_end_p1_in_axes2_x = v->tube_c_2*tube_n_m1_t_13 +
         v->tube_e_1_in_axes2_x*tube_n_m1_t_12;
@@ -2306,10 +2226,6 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
     v->tube_S_dot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_dot_x +
         v->axis_x_tube_axes2_y*tube_S_dot_y + v->axis_x_tube_axes2_z*tube_S_dot_z;
-    const real tube_S_dot_in_axes2_y = v->axis_y_tube_axes2_x*tube_S_dot_x +
-        v->axis_y_tube_axes2_y*tube_S_dot_y + v->axis_y_tube_axes2_z*tube_S_dot_z;
-    const real tube_S_dot_in_axes2_z = v->axis_z_tube_axes2_x*tube_S_dot_x +
-        v->axis_z_tube_axes2_y*tube_S_dot_y + v->axis_z_tube_axes2_z*tube_S_dot_z;
     /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
     const real tube_omega_in_axes2_y = v->axis_y_tube_axes2_x*omega_x +
         v->axis_y_tube_axes2_y*omega_y + v->axis_y_tube_axes2_z*omega_z;
@@ -2326,61 +2242,32 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real tube_eta_3 = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
         v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
     /* (tube-qd_1) rate of joint 1 */
-    const real tube_qd_1_t = R(1.35)*tube_eta_1;
-    const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
-    const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
-    v->tube_qd_1 = v->inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*v->tube_w_1_t_76 +
-        tube_S_dot_in_axes2_z*v->tube_w_1_t_77 + v->tube_m1_w_1_t*tube_qd_1_t +
-        v->tube_m3_w_1_t*tube_qd_1_t_3 - v->tube_m2_w_1_t*tube_qd_1_t_2);
+    v->tube_qd_1_t_2 = v->inv_tube_qd_1_t*(tube_eta_3*v->tube_m3_w_1_t -
+        tube_eta_1*v->tube_m1_w_1_t + tube_eta_2*v->tube_m2_w_1_t);
     /* (tube-qd_2) rate of joint 2 */
-    const real tube_qd_2_t = v->inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*v->tube_w_1_t_64 +
-        tube_S_dot_in_axes2_z*v->tube_w_1_t_65 + tube_qd_1_t*v->tube_w_1_t_66 +
-        tube_qd_1_t_2*v->tube_w_1_t_67 + tube_qd_1_t_3*v->tube_w_1_t_68 -
-        v->tube_qd_1*v->tube_w_1_t_69);
-    const real tube_qd_2_t_2 =
-        v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-        tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + tube_qd_1_t*v->tube_w_1_t_51 +
-        tube_qd_1_t_3*v->tube_w_1_t_52 + v->tube_qd_1*v->tube_w_1_t_58 +
-        tube_qd_2_t*v->tube_w_1_t_53);
-    const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
-        tube_qd_1_t*v->tube_w_1_t_15 + tube_qd_1_t_3*v->tube_w_1_t_16 -
-        v->tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*v->tube_w_1_t_25 +
-        tube_qd_2_t_2*v->tube_w_1_t_21 +
-        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_S_dot_in_axes2_y*v->tube_w_1_t_34 +
-        tube_qd_1_t*v->tube_w_1_t_35 + tube_qd_1_t_3*v->tube_w_1_t_36 +
-        v->tube_qd_1*v->tube_w_1_t_45 + tube_qd_2_t*v->tube_w_1_t_41 -
-        tube_qd_2_t_2*v->tube_w_1_t_37);
-    v->tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
+    v->tube_qd_2 = v->inv_tube_qd_1_t*(tube_eta_1*v->tube_w_1_t + tube_eta_2*v->tube_m2_w_2_t
+        + tube_eta_3*v->tube_w_1_t_2);
     /* (tube-omega_1) angular velocity of link 1 */
-    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*v->tube_qd_1;
-    const real tube_omega_1_in_axes2_y = -v->tube_c_2*v->tube_qd_1;
+    const real tube_omega_1_t = v->tube_e_1_in_axes2_x*v->tube_qd_1_t_2;
+    const real tube_omega_1_in_axes2_y = v->tube_c_2*v->tube_qd_1_t_2;
     /* (tube-W_2) centripetal tensor of link 2 */
     v->tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*v->tube_qd_2;
-    v->tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*v->tube_qd_2;
     const real tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
     const real tube_W_2_t_2 = v->tube_qd_2*v->tube_qd_2;
-    v->tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2;
-    v->tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+    v->tube_W_2_in_axes2_xx = -tube_W_2_t_2 - tube_W_2_t;
+    v->tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t;
     /* (tube-u_1) centripetal acceleration of the connection point */
     v->tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
     v->tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
     v->tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+    /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    v->tube_zeta_2_in_axes2_y = tube_omega_1_t*v->tube_qd_2;
     /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    v->tube_bias_t = v->tube_W_2_in_axes2_xz*v->tube_q_3;
-    v->tube_bias_t_2 = -v->tube_W_2_in_axes2_xy*v->tube_q_3;
+    v->tube_bias_t = v->tube_q_3*v->tube_zeta_2_in_axes2_y;
+    v->tube_bias_t_2 = v->tube_W_2_in_axes2_xy*v->tube_q_3;
     const real tube_bias_t_3 = 2*v->tube_S_dot_in_axes2_x;
     v->tube_bias_t_4 = tube_bias_t_3*v->tube_qd_2;
     v->tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y;
-    v->tube_bias_in_axes2_y = v->tube_bias_t_4 - v->tube_bias_t_2;
-    v->tube_bias_in_axes2_z = 2*v->tube_bias_t - v->tube_bias_t_5;
-    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    v->tube_rel_o_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_u_1_x +
-        v->axis_y_tube_axes2_y*v->tube_u_1_y + v->axis_y_tube_axes2_z*v->tube_u_1_z -
-        v->tube_bias_in_axes2_y;
-    v->tube_rel_o_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_u_1_x +
-        v->axis_z_tube_axes2_y*v->tube_u_1_y + v->axis_z_tube_axes2_z*v->tube_u_1_z -
-        v->tube_bias_in_axes2_z;
     /* (tube-nd_m1) rate of moment direction 1 */
     const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
         v->tube_n_m1_in_axes2_z*tube_omega_in_axes2_x -
@@ -2389,45 +2276,45 @@ INLINE void stage_tube_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->tube_end_p1_in_axes2_z*tube_omega_in_axes2_x -
         v->tube_end_p1_in_axes2_x*v->tube_qd_2;
     /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-    const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t = tube_omega_in_axes2_x + tube_omega_1_t;
+    const real tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y;
     const real tube_nu_1_t_3 = tube_omega_in_axes2_z - v->tube_qd_2;
-    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-        tube_nu_1_t*(v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y +
-        v->tube_end_p1_in_axes2_z*v->tube_qd_2);
-    v->tube_nu_1 = tube_nu_1_t_4 - v->tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_z*tube_nu_1_t_3 +
+        tube_nu_1_t*(v->tube_end_p1_in_axes2_z*v->tube_qd_2 +
+        v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) -
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2;
+    v->tube_nu_1 = v->tube_end_p1_in_axes2_z*v->tube_zeta_2_in_axes2_y + tube_nu_1_t_4;
     /* (tube-nd_m2) rate of moment direction 2 */
     const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-        v->tube_n_m2_in_axes2_y*tube_omega_in_axes2_z -
-        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x;
+        v->tube_n_m2_in_axes2_y*tube_omega_in_axes2_z +
+        v->tube_end_p2_in_axes2_z*tube_omega_1_t;
     const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
         v->tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
         v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
     /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real tube_nu_2_t = -v->tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
-        v->tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
-    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
-        tube_nd_m2_in_axes2_x*tube_nu_1_t -
-        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
-    v->tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    const real tube_nu_2_t = v->tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y -
+        v->tube_n_m2_in_axes2_y*v->tube_zeta_2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_3*(v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v->tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
+    v->tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2;
     /* (tube-nd_m3) rate of moment direction 3 */
     const real tube_nd_m3_in_axes2_x = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-        v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_x +
-        v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x;
+        v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_x -
+        v->tube_end_p3_in_axes2_y*tube_omega_1_t;
     const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
         v->tube_end_p3_in_axes2_y*tube_omega_in_axes2_z +
         v->tube_end_p3_in_axes2_y*v->tube_qd_2;
     /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x +
-        v->tube_end_p3_in_axes2_z*v->tube_qd_2) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-    v->tube_nu_3 = v->tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_z*tube_nu_1_t_3 +
+        tube_nd_m3_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_2*(v->tube_n_m3_in_axes2_z*tube_omega_1_t -
+        v->tube_end_p3_in_axes2_z*v->tube_qd_2);
+    v->tube_nu_3 = v->tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z + tube_nu_3_t;
     /* (tube-f_3) inertia force of link 3 less its weight */
-    const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-    v->tube_f_3_t_2 = v->tube_W_2_t_3*m->tube_h_3_in_spec2_x[i];
-    v->tube_f_3_t_3 = m->tube_h_3_in_spec2_z[i]*(tube_f_3_t + tube_W_2_t_2);
+    const real tube_f_3_t = tube_omega_1_t*tube_omega_1_t;
+    v->tube_f_3_t_2 = v->tube_W_2_in_axes2_xx*m->tube_h_3_in_spec2_x[i];
+    v->tube_f_3_t_3 = m->tube_h_3_in_spec2_z[i]*(tube_W_2_t_2 + tube_f_3_t);
     v->tube_f_3_t_4 = m->tube_h_3_in_spec2_y[i]*(tube_W_2_t + tube_f_3_t);
     /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->tube_mu_2_t = m->tube_J_group_2_in_axes2_yz[i]*(tube_W_2_t - tube_W_2_t_2);
@@ -2458,13 +2345,6 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *s, const real *A, v
         W_p_t_6*v->tube_q_z;
     v->tube_S_ddot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_ddot_x +
         v->axis_x_tube_axes2_y*tube_S_ddot_y + v->axis_x_tube_axes2_z*tube_S_ddot_z;
-    /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-    const real tube_rel_in_axes2_y = v->axis_y_tube_axes2_x*tube_S_ddot_x +
-        v->axis_y_tube_axes2_y*tube_S_ddot_y + v->axis_y_tube_axes2_z*tube_S_ddot_z -
-        v->tube_bias_in_axes2_y;
-    const real tube_rel_in_axes2_z = v->axis_z_tube_axes2_x*tube_S_ddot_x +
-        v->axis_z_tube_axes2_y*tube_S_ddot_y + v->axis_z_tube_axes2_z*tube_S_ddot_z -
-        v->tube_bias_in_axes2_z;
     /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real tube_etad_1 = v->tube_nu_1 - v->tube_etad_1_t;
     /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
@@ -2472,79 +2352,34 @@ INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *s, const real *A, v
     /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
     const real tube_etad_3 = v->tube_nu_3 - v->tube_etad_3_t;
     /* (tube-qdd_1) acceleration of joint 1 */
-    const real tube_qdd_1_t = R(1.35)*tube_etad_1;
-    const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
-    const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-    v->tube_qdd_1 = v->inv_tube_w_1_t_75*(tube_rel_in_axes2_y*v->tube_w_1_t_76 +
-        tube_rel_in_axes2_z*v->tube_w_1_t_77 - v->tube_m2_w_1_t*tube_qdd_1_t_2 +
-        v->tube_m1_w_1_t*tube_qdd_1_t + v->tube_m3_w_1_t*tube_qdd_1_t_3);
+    v->tube_qdd_1_t = v->inv_tube_qd_1_t*(tube_etad_2*v->tube_m2_w_1_t +
+        tube_etad_3*v->tube_m3_w_1_t - tube_etad_1*v->tube_m1_w_1_t);
     /* (tube-qdd_2) acceleration of joint 2 */
-    const real tube_qdd_2_t = v->inv_tube_w_1_t_63*(tube_rel_in_axes2_y*v->tube_w_1_t_64 +
-        tube_qdd_1_t_2*v->tube_w_1_t_67 + tube_rel_in_axes2_z*v->tube_w_1_t_65 +
-        tube_qdd_1_t*v->tube_w_1_t_66 + tube_qdd_1_t_3*v->tube_w_1_t_68 -
-        v->tube_qdd_1*v->tube_w_1_t_69);
-    const real tube_qdd_2_t_2 = v->inv_tube_w_1_t_49*(tube_rel_in_axes2_y*v->tube_w_1_t_50 +
-        v->inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1_t*v->tube_w_1_t_51 +
-        tube_qdd_1_t_3*v->tube_w_1_t_52 + v->tube_qdd_1*v->tube_w_1_t_58 +
-        tube_qdd_2_t*v->tube_w_1_t_53);
-    const real tube_qdd_2_t_3 = tube_rel_in_axes2_y*v->tube_w_1_t_14 +
-        tube_qdd_1_t*v->tube_w_1_t_15 + tube_qdd_1_t_3*v->tube_w_1_t_16 -
-        v->tube_qdd_1*v->tube_w_1_t_29 - tube_qdd_2_t*v->tube_w_1_t_25 +
-        tube_qdd_2_t_2*v->tube_w_1_t_21 +
-        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_rel_in_axes2_y*v->tube_w_1_t_34 +
-        tube_qdd_1_t*v->tube_w_1_t_35 + tube_qdd_1_t_3*v->tube_w_1_t_36 +
-        v->tube_qdd_1*v->tube_w_1_t_45 + tube_qdd_2_t*v->tube_w_1_t_41 -
-        tube_qdd_2_t_2*v->tube_w_1_t_37);
-    v->tube_qdd_2 = v->inv_tube_w_1_t_13*tube_qdd_2_t_3;
+    v->tube_qdd_2 = v->inv_tube_qd_1_t*(tube_etad_1*v->tube_w_1_t +
+        tube_etad_2*v->tube_m2_w_2_t + tube_etad_3*v->tube_w_1_t_2);
 }
 
 INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
 {
-    /* (tube-w_1) force part of reciprocal wrench 1 */
-    const real tube_w_1_in_axes2_y = v->inv_tube_w_1_t_75*v->tube_w_1_t_76;
-    const real tube_w_1_in_axes2_z = v->inv_tube_w_1_t_75*v->tube_w_1_t_77;
-    const real tube_w_1_in_axes1_x = v->tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
-    const real tube_w_1_t_78 = v->tube_c_2*tube_w_1_in_axes2_y;
     /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real tube_m1_w_1 = R(1.35)*v->inv_tube_w_1_t_75*v->tube_m1_w_1_t;
+    const real tube_m1_w_1 = v->inv_tube_w_1_t_3*v->tube_m1_w_1_t;
     /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-    const real tube_m2_w_1 = -R(1.35)*v->inv_tube_w_1_t_75*v->tube_m2_w_1_t;
+    const real tube_m2_w_1 = -v->inv_tube_w_1_t_3*v->tube_m2_w_1_t;
     /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-    const real tube_m3_w_1 = R(1.35)*v->inv_tube_w_1_t_75*v->tube_m3_w_1_t;
-    /* (tube-w_2) force part of reciprocal wrench 2 */
-    const real tube_w_2_t = v->inv_tube_w_1_t_13*v->inv_tube_w_1_t_33*v->tube_w_1_t_17;
-    const real tube_w_2_t_2 = v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_13*v->tube_w_1_t_21 -
-        v->tube_w_1_t_37*tube_w_2_t);
-    const real tube_w_2_t_3 = v->inv_tube_w_1_t_63*(v->tube_w_1_t_41*tube_w_2_t -
-        v->inv_tube_w_1_t_13*v->tube_w_1_t_25 + v->tube_w_1_t_53*tube_w_2_t_2);
-    const real tube_w_2_t_4 = v->inv_tube_w_1_t_75*(v->inv_tube_w_1_t_13*v->tube_w_1_t_29 -
-        v->tube_w_1_t_45*tube_w_2_t - v->tube_w_1_t_58*tube_w_2_t_2 +
-        v->tube_w_1_t_69*tube_w_2_t_3);
-    const real tube_w_2_in_axes2_y = v->inv_tube_w_1_t_13*v->tube_w_1_t_14 +
-        v->tube_w_1_t_34*tube_w_2_t + v->tube_w_1_t_50*tube_w_2_t_2 +
-        v->tube_w_1_t_64*tube_w_2_t_3 - v->tube_w_1_t_76*tube_w_2_t_4;
-    const real tube_w_2_in_axes2_z = v->inv_tube_w_1_t_49*tube_w_2_t_2 +
-        v->tube_w_1_t_65*tube_w_2_t_3 - v->tube_w_1_t_77*tube_w_2_t_4;
+    const real tube_m3_w_1_t_2 = v->inv_tube_w_1_t_3*v->tube_m3_w_1_t;
     /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-    const real tube_m1_w_2_t = v->inv_tube_w_1_t_13*v->tube_w_1_t_15 +
-        v->tube_w_1_t_35*tube_w_2_t + v->tube_w_1_t_51*tube_w_2_t_2 +
-        v->tube_w_1_t_66*tube_w_2_t_3 - v->tube_m1_w_1_t*tube_w_2_t_4;
-    const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
+    const real tube_m1_w_2 = v->inv_tube_w_1_t_3*v->tube_w_1_t;
     /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-    const real tube_m2_w_2_t = v->tube_w_1_t_67*tube_w_2_t_3 + v->tube_m2_w_1_t*tube_w_2_t_4;
-    const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
+    const real tube_m2_w_2 = v->inv_tube_w_1_t_3*v->tube_m2_w_2_t;
     /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-    const real tube_m3_w_2_t = v->inv_tube_w_1_t_13*v->tube_w_1_t_16 +
-        v->tube_w_1_t_36*tube_w_2_t + v->tube_w_1_t_52*tube_w_2_t_2 +
-        v->tube_w_1_t_68*tube_w_2_t_3 - v->tube_m3_w_1_t*tube_w_2_t_4;
-    const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
+    const real tube_m3_w_2 = v->inv_tube_w_1_t_3*v->tube_w_1_t_2;
     /* (tube-o_1) moment part of reciprocal wrench 1 */
-    const real tube_o_1_in_axes2_x = -v->tube_end_p2_in_axes2_y*tube_m2_w_1 -
-        v->tube_end_p3_in_axes2_z*tube_m3_w_1;
+    const real tube_o_1_in_axes2_x = v->tube_end_p3_in_axes2_z*tube_m3_w_1_t_2 -
+        v->tube_end_p2_in_axes2_y*tube_m2_w_1;
     const real tube_o_1_in_axes2_y = tube_m2_w_1*v->tube_n_m2_in_axes2_y -
         v->tube_end_p1_in_axes2_z*tube_m1_w_1;
-    const real tube_o_1_in_axes2_z = tube_m1_w_1*v->tube_n_m1_in_axes2_z +
-        tube_m3_w_1*v->tube_n_m3_in_axes2_z;
+    const real tube_o_1_in_axes2_z = tube_m1_w_1*v->tube_n_m1_in_axes2_z -
+        tube_m3_w_1_t_2*v->tube_n_m3_in_axes2_z;
     /* (tube-o_2) moment part of reciprocal wrench 2 */
     const real tube_o_2_in_axes2_x = -v->tube_end_p2_in_axes2_y*tube_m2_w_2 -
         v->tube_end_p3_in_axes2_z*tube_m3_w_2;
@@ -2559,9 +2394,6 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
     const real tube_dalpha_alpha_1_in_axes2_xx = v->tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
     const real tube_dalpha_alpha_1_in_axes2_xz = v->tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
     const real tube_dalpha_alpha_1_t_3 = v->tube_c_2*tube_o_1_in_axes2_z;
-    /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real tube_d_alpha_1_in_axes2_xz = v->tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
-    const real tube_d_alpha_1_t = v->tube_c_2*tube_w_1_in_axes2_z;
     /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
        link 3, less gravity */
     const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v->tube_q_3;
@@ -2570,12 +2402,14 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
     const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v->tube_q_3;
     const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v->tube_q_3;
     const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v->tube_q_3;
-    /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-       3, less gravity */
-    const real tube_d_acc_3_in_axes2_yy = v->tube_q_3*tube_w_2_in_axes2_y;
-    const real tube_d_acc_3_in_axes2_yz = v->tube_q_3*tube_w_2_in_axes2_z;
-    const real tube_d_acc_3_in_axes2_zy = v->tube_q_3*tube_w_1_t_78;
-    const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v->tube_q_3;
+    /* (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its
+       turning about its reference point */
+    const real tube_dalpha_phi_3_t = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_x;
+    const real tube_dalpha_phi_3_t_2 = tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_y;
+    const real tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_y[i] -
+        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_z;
     /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
        outwards, the force at the connection point left out */
     const real tube_dalpha_N_2_in_axes2_zx =
@@ -2602,22 +2436,17 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
         v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_o_2_in_axes2_z +
         tube_dalpha_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
         tube_dalpha_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
-    /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-       outwards, the force at the connection point left out */
-    const real tube_d_N_2_in_axes2_zy = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_w_1_in_axes1_x +
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_w_1_t_78 +
-        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_y +
-        tube_d_acc_3_in_axes2_yy*m->tube_link3_mass[i] -
-        m->tube_h_3_in_spec2_y[i]*tube_w_1_in_axes1_x);
-    const real tube_d_N_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_d_alpha_1_in_axes2_xz +
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_x[i] -
-        m->tube_J_group_2_in_axes2_yz[i]*tube_d_alpha_1_t +
-        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_2_in_axes2_z +
-        tube_d_acc_3_in_axes2_yz*m->tube_link3_mass[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_y[i]);
+    /* (tube-dalpha_Gamma_3) coefficient of the acceleration in: force along axis 3 of the distal
+       links' inertia and weight */
+    const real tube_dalpha_Gamma_3_x = -v->axis_x_tube_axes2_x*tube_dalpha_phi_3_t -
+        v->axis_y_tube_axes2_x*tube_dalpha_phi_3_t_2 -
+        v->axis_z_tube_axes2_x*tube_dalpha_phi_3_t_3;
+    const real tube_dalpha_Gamma_3_y = -v->axis_x_tube_axes2_y*tube_dalpha_phi_3_t -
+        v->axis_y_tube_axes2_y*tube_dalpha_phi_3_t_2 -
+        v->axis_z_tube_axes2_y*tube_dalpha_phi_3_t_3;
+    const real tube_dalpha_Gamma_3_z = -v->axis_x_tube_axes2_z*tube_dalpha_phi_3_t -
+        v->axis_y_tube_axes2_z*tube_dalpha_phi_3_t_2 -
+        v->axis_z_tube_axes2_z*tube_dalpha_phi_3_t_3;
     /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real tube_dalpha_Gamma_1_t =
@@ -2665,52 +2494,6 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
     /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real tube_d_Gamma_1_t = v->tube_c_2*m->tube_h_3_in_spec2_y[i];
-    const real tube_d_Gamma_1_t_2 =
-        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_in_axes1_x -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_w_1_t_78 -
-        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_x[i] -
-        v->tube_q_3*(m->tube_h_3_in_spec2_x[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_1_in_axes1_x +
-        tube_d_acc_3_in_axes2_zy*m->tube_link3_mass[i]));
-    const real tube_d_Gamma_1_in_axes2_y =
-        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_y +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_w_1_in_axes1_x -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_w_1_t_78 -
-        tube_d_acc_3_in_axes2_yy*m->tube_h_3_in_spec2_y[i] -
-        tube_d_acc_3_in_axes2_zy*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_2;
-    const real tube_d_Gamma_1_t_3 =
-        v->tube_c_2*(m->tube_J_group_2_in_axes2_yz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_yy[i]*tube_d_alpha_1_t -
-        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_x[i] -
-        v->tube_q_3*(tube_d_alpha_1_t*m->tube_h_3_in_spec2_x[i] -
-        tube_d_alpha_1_in_axes2_xz*m->tube_h_3_in_spec2_z[i] +
-        tube_d_acc_3_in_axes2_zz*m->tube_link3_mass[i]));
-    const real tube_d_Gamma_1_in_axes2_z =
-        v->tube_e_1_in_axes2_x*(m->tube_J_group_2_in_axes2_xz[i]*tube_w_2_in_axes2_z +
-        m->tube_J_group_2_in_axes2_xx[i]*tube_d_alpha_1_in_axes2_xz -
-        m->tube_J_group_2_in_axes2_xy[i]*tube_d_alpha_1_t -
-        tube_d_acc_3_in_axes2_yz*m->tube_h_3_in_spec2_y[i] -
-        tube_d_acc_3_in_axes2_zz*m->tube_h_3_in_spec2_z[i]) - tube_d_Gamma_1_t_3;
-    /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_in_axes2_yx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_yz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
-    const real tube_dalpha_G_in_axes2_zx = tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zy = tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z;
-    const real tube_dalpha_G_in_axes2_zz = tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
-    /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_in_axes2_yz = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y +
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y;
     /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2 +
@@ -2723,10 +2506,6 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m1_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m1_w_2 -
         tube_d_Gamma_1_t*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m1_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1;
-    const real tube_d_G_m1_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m1_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1;
     /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2 +
@@ -2739,26 +2518,18 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m2_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m2_w_2 -
         tube_d_Gamma_1_t*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m2_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1;
-    const real tube_d_G_m2_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m2_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1;
     /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
        balances the leg's inertia and weight along all degrees of freedom */
-    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1;
-    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1;
-    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 +
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1;
+    const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 -
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1_t_2;
+    const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 -
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1_t_2;
+    const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 -
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1_t_2;
     /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
        the leg's inertia and weight along all degrees of freedom */
-    const real tube_d_G_m3_in_axes2_x = m->tube_h_3_in_spec2_z[i]*tube_m3_w_2 -
-        tube_d_Gamma_1_t*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_y = tube_d_N_2_in_axes2_zy*tube_m3_w_2 +
-        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1;
-    const real tube_d_G_m3_in_axes2_z = tube_d_N_2_in_axes2_zz*tube_m3_w_2 +
-        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1;
+    const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_t*tube_m3_w_1_t_2 +
+        m->tube_h_3_in_spec2_z[i]*tube_m3_w_2;
     /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
        balances the leg's inertia and weight along all degrees of freedom */
     const real tube_dalpha_G_m_in_axes2_xx =
@@ -2792,73 +2563,19 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
        the leg's inertia and weight along all degrees of freedom */
     const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v->tube_end_p2_in_axes2_y -
         tube_d_G_m3_in_axes2_x*v->tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v->tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_y*v->tube_end_p3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v->tube_end_p2_in_axes2_y -
-        tube_d_G_m3_in_axes2_z*v->tube_end_p3_in_axes2_z;
     const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v->tube_n_m2_in_axes2_y -
         tube_d_G_m1_in_axes2_x*v->tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v->tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_y*v->tube_end_p1_in_axes2_z;
-    const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v->tube_n_m2_in_axes2_y -
-        tube_d_G_m1_in_axes2_z*v->tube_end_p1_in_axes2_z;
     const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v->tube_n_m1_in_axes2_z +
         tube_d_G_m3_in_axes2_x*v->tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v->tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_y*v->tube_n_m3_in_axes2_z;
-    const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v->tube_n_m1_in_axes2_z +
-        tube_d_G_m3_in_axes2_z*v->tube_n_m3_in_axes2_z;
-    /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
-    const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_x;
-    const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_y;
-    const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_o_2_in_axes2_z;
-    /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real tube_d_c_in_axes2_xy = m->tube_h_3_in_spec2_y[i]*tube_w_1_t_78 -
-        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_y;
-    const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*m->tube_h_3_in_spec2_y[i] -
-        m->tube_h_3_in_spec2_z[i]*tube_w_2_in_axes2_z;
     /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real tube_Q_t = tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - m->tube_link3_mass[i] +
-        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y;
-    const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-    const real tube_Q_t_3 = tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - m->tube_link3_mass[i]
-        + tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z;
-    const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-    const real tube_Q_t_5 = v->axis_y_tube_axes2_x*tube_Q_t_2 -
-        v->axis_x_tube_axes2_x*tube_d_c_in_axes2_xy +
-        v->axis_z_tube_axes2_x*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_6 = v->axis_y_tube_axes2_y*tube_Q_t_2 -
-        v->axis_x_tube_axes2_y*tube_d_c_in_axes2_xy +
-        v->axis_z_tube_axes2_y*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_7 = v->axis_y_tube_axes2_z*tube_Q_t_2 -
-        v->axis_x_tube_axes2_z*tube_d_c_in_axes2_xy +
-        v->axis_z_tube_axes2_z*tube_d_G_in_axes2_yz;
-    const real tube_Q_t_8 = v->axis_z_tube_axes2_x*tube_Q_t_4 -
-        v->axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_9 = v->axis_z_tube_axes2_y*tube_Q_t_4 -
-        v->axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_10 = v->axis_z_tube_axes2_z*tube_Q_t_4 -
-        v->axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-    const real tube_Q_t_11 = v->axis_z_tube_axes2_x*tube_Q_t_8 +
-        v->axis_y_tube_axes2_x*tube_Q_t_5;
-    v->tube_Q_xx = m->tube_link3_mass[i] + 2*tube_Q_t_11;
-    v->tube_Q_xy = v->axis_z_tube_axes2_x*tube_Q_t_9 + v->axis_z_tube_axes2_y*tube_Q_t_8 +
-        v->axis_y_tube_axes2_x*tube_Q_t_6 + v->axis_y_tube_axes2_y*tube_Q_t_5;
-    v->tube_Q_xz = v->axis_z_tube_axes2_x*tube_Q_t_10 + v->axis_z_tube_axes2_z*tube_Q_t_8 +
-        v->axis_y_tube_axes2_x*tube_Q_t_7 + v->axis_y_tube_axes2_z*tube_Q_t_5;
-    const real tube_Q_t_12 = v->axis_z_tube_axes2_y*tube_Q_t_9 +
-        v->axis_y_tube_axes2_y*tube_Q_t_6;
-    v->tube_Q_yy = m->tube_link3_mass[i] + 2*tube_Q_t_12;
-    v->tube_Q_yz = v->axis_z_tube_axes2_y*tube_Q_t_10 + v->axis_z_tube_axes2_z*tube_Q_t_9 +
-        v->axis_y_tube_axes2_y*tube_Q_t_7 + v->axis_y_tube_axes2_z*tube_Q_t_6;
-    const real tube_Q_t_13 = v->axis_z_tube_axes2_z*tube_Q_t_10 +
-        v->axis_y_tube_axes2_z*tube_Q_t_7;
-    v->tube_Q_zz = m->tube_link3_mass[i] + 2*tube_Q_t_13;
+    const real tube_Q_t = v->axis_x_tube_axes2_x*m->tube_link3_mass[i];
+    const real tube_Q_t_2 = v->axis_x_tube_axes2_y*m->tube_link3_mass[i];
+    v->tube_Q_xx = v->axis_x_tube_axes2_x*tube_Q_t;
+    v->tube_Q_xy = v->axis_x_tube_axes2_y*tube_Q_t;
+    v->tube_Q_xz = v->axis_x_tube_axes2_z*tube_Q_t;
+    v->tube_Q_yy = v->axis_x_tube_axes2_y*tube_Q_t_2;
+    v->tube_Q_yz = v->axis_x_tube_axes2_z*tube_Q_t_2;
+    v->tube_Q_zz = v->axis_x_tube_axes2_z*v->axis_x_tube_axes2_z*m->tube_link3_mass[i];
     /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
        actuation */
     const real tube_dalpha_c_m_zz =
@@ -2879,84 +2596,32 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
     const real tube_d_c_m_t_2 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
         v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
         v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
-    const real tube_d_c_m_t_3 = -v->axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-        v->axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-        v->axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
-    const real tube_d_c_m_t_4 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-        v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-        v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
-    const real tube_d_c_m_t_5 = -v->axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-        v->axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-        v->axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
-    const real tube_d_c_m_t_6 = -v->axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-        v->axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-        v->axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
-    const real tube_d_c_m_xx = v->axis_x_tube_axes2_x*tube_d_c_m_t +
-        v->axis_y_tube_axes2_x*tube_d_c_m_t_3 + v->axis_z_tube_axes2_x*tube_d_c_m_t_5;
-    const real tube_d_c_m_xy = v->axis_x_tube_axes2_y*tube_d_c_m_t +
-        v->axis_y_tube_axes2_y*tube_d_c_m_t_3 + v->axis_z_tube_axes2_y*tube_d_c_m_t_5;
-    const real tube_d_c_m_xz = v->axis_x_tube_axes2_z*tube_d_c_m_t +
-        v->axis_y_tube_axes2_z*tube_d_c_m_t_3 + v->axis_z_tube_axes2_z*tube_d_c_m_t_5;
-    const real tube_d_c_m_yx = v->axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-        v->axis_y_tube_axes2_x*tube_d_c_m_t_4 + v->axis_z_tube_axes2_x*tube_d_c_m_t_6;
+    const real tube_d_c_m_xx = v->axis_x_tube_axes2_x*tube_d_c_m_t;
+    const real tube_d_c_m_xy = v->axis_x_tube_axes2_y*tube_d_c_m_t;
+    const real tube_d_c_m_xz = v->axis_x_tube_axes2_z*tube_d_c_m_t;
+    const real tube_d_c_m_yx = v->axis_x_tube_axes2_x*tube_d_c_m_t_2;
     /* (M_ta) coupling block of M */
-    const real tube_M_ta_t = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_2 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_3 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
-    const real tube_M_ta_t_4 = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_5 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_6 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
-    const real tube_M_ta_t_7 = v->axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-        v->axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-        v->axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_8 = v->axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-        v->axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-        v->axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_9 = v->axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-        v->axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-        v->axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
-    const real tube_M_ta_t_10 = v->tube_Q_xy*v->tube_q_z;
-    const real tube_M_ta_t_11 = v->tube_Q_xz*v->tube_q_y;
-    const real tube_M_ta_t_12 = v->tube_Q_yz*v->tube_q_x;
-    v->tube_M_ta_t_13 = tube_M_ta_t_11 - v->axis_x_tube_axes2_x*tube_M_ta_t -
-        v->axis_y_tube_axes2_x*tube_M_ta_t_4 - v->axis_z_tube_axes2_x*tube_M_ta_t_7 -
-        tube_M_ta_t_10;
-    v->tube_M_ta_t_14 = v->tube_Q_xx*v->tube_q_z - v->axis_x_tube_axes2_y*tube_M_ta_t -
-        v->axis_y_tube_axes2_y*tube_M_ta_t_4 - v->axis_z_tube_axes2_y*tube_M_ta_t_7 -
-        v->tube_Q_xz*v->tube_q_x;
-    v->tube_M_ta_t_15 = v->tube_Q_xy*v->tube_q_x - v->axis_x_tube_axes2_z*tube_M_ta_t -
-        v->axis_y_tube_axes2_z*tube_M_ta_t_4 - v->axis_z_tube_axes2_z*tube_M_ta_t_7 -
-        v->tube_Q_xx*v->tube_q_y;
-    v->tube_M_ta_t_16 = v->tube_Q_yz*v->tube_q_y - v->axis_x_tube_axes2_x*tube_M_ta_t_2 -
-        v->axis_y_tube_axes2_x*tube_M_ta_t_5 - v->axis_z_tube_axes2_x*tube_M_ta_t_8 -
-        v->tube_Q_yy*v->tube_q_z;
-    v->tube_M_ta_t_17 = tube_M_ta_t_10 - v->axis_x_tube_axes2_y*tube_M_ta_t_2 -
-        v->axis_y_tube_axes2_y*tube_M_ta_t_5 - v->axis_z_tube_axes2_y*tube_M_ta_t_8 -
-        tube_M_ta_t_12;
-    v->tube_M_ta_t_18 = v->tube_Q_yy*v->tube_q_x - v->axis_x_tube_axes2_z*tube_M_ta_t_2 -
-        v->axis_y_tube_axes2_z*tube_M_ta_t_5 - v->axis_z_tube_axes2_z*tube_M_ta_t_8 -
-        v->tube_Q_xy*v->tube_q_y;
-    v->tube_M_ta_t_19 = v->tube_Q_zz*v->tube_q_y - v->axis_x_tube_axes2_x*tube_M_ta_t_3 -
-        v->axis_y_tube_axes2_x*tube_M_ta_t_6 - v->axis_z_tube_axes2_x*tube_M_ta_t_9 -
-        v->tube_Q_yz*v->tube_q_z;
-    v->tube_M_ta_t_20 = v->tube_Q_xz*v->tube_q_z - v->axis_x_tube_axes2_y*tube_M_ta_t_3 -
-        v->axis_y_tube_axes2_y*tube_M_ta_t_6 - v->axis_z_tube_axes2_y*tube_M_ta_t_9 -
-        v->tube_Q_zz*v->tube_q_x;
-    v->tube_M_ta_t_21 = tube_M_ta_t_12 - v->axis_x_tube_axes2_z*tube_M_ta_t_3 -
-        v->axis_y_tube_axes2_z*tube_M_ta_t_6 - v->axis_z_tube_axes2_z*tube_M_ta_t_9 -
-        tube_M_ta_t_11;
+    const real tube_M_ta_t = v->tube_Q_xy*v->tube_q_z;
+    const real tube_M_ta_t_2 = v->tube_Q_xz*v->tube_q_y;
+    const real tube_M_ta_t_3 = v->tube_Q_yz*v->tube_q_x;
+    v->tube_M_ta_t_4 = tube_M_ta_t_2 - tube_M_ta_t +
+        v->axis_x_tube_axes2_x*tube_dalpha_Gamma_3_x;
+    v->tube_M_ta_t_5 = v->tube_Q_xx*v->tube_q_z - v->tube_Q_xz*v->tube_q_x +
+        v->axis_x_tube_axes2_x*tube_dalpha_Gamma_3_y;
+    v->tube_M_ta_t_6 = v->tube_Q_xy*v->tube_q_x - v->tube_Q_xx*v->tube_q_y +
+        v->axis_x_tube_axes2_x*tube_dalpha_Gamma_3_z;
+    v->tube_M_ta_t_7 = v->tube_Q_yz*v->tube_q_y - v->tube_Q_yy*v->tube_q_z +
+        v->axis_x_tube_axes2_y*tube_dalpha_Gamma_3_x;
+    v->tube_M_ta_t_8 = tube_M_ta_t - tube_M_ta_t_3 +
+        v->axis_x_tube_axes2_y*tube_dalpha_Gamma_3_y;
+    v->tube_M_ta_t_9 = v->tube_Q_yy*v->tube_q_x - v->tube_Q_xy*v->tube_q_y +
+        v->axis_x_tube_axes2_y*tube_dalpha_Gamma_3_z;
+    v->tube_M_ta_t_10 = v->tube_Q_zz*v->tube_q_y - v->tube_Q_yz*v->tube_q_z +
+        v->axis_x_tube_axes2_z*tube_dalpha_Gamma_3_x;
+    v->tube_M_ta_t_11 = v->tube_Q_xz*v->tube_q_z - v->tube_Q_zz*v->tube_q_x +
+        v->axis_x_tube_axes2_z*tube_dalpha_Gamma_3_y;
+    v->tube_M_ta_t_12 = tube_M_ta_t_3 - tube_M_ta_t_2 +
+        v->axis_x_tube_axes2_z*tube_dalpha_Gamma_3_z;
     /* (M_aa) rotational block of M */
     const real tube_M_aa_t = -v->axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
         v->axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
@@ -2979,301 +2644,251 @@ INLINE void stage_tube_M_dynamics(const prepared *m, size_t i, values_tube *v)
     const real tube_M_aa_t_7 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
         v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
         v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
-    const real tube_M_aa_t_8 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-        v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-        v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
-    const real tube_M_aa_t_9 = -v->axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-        v->axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-        v->axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
-    v->tube_M_aa_t_10 = tube_d_c_m_xy*v->tube_q_z - v->axis_x_tube_axes2_x*tube_M_aa_t -
-        v->axis_y_tube_axes2_x*tube_M_aa_t_3 - v->axis_z_tube_axes2_x*tube_M_aa_t_5 -
-        tube_d_c_m_xz*v->tube_q_y + v->tube_M_ta_t_19*v->tube_q_y -
-        v->tube_M_ta_t_16*v->tube_q_z;
-    v->tube_M_aa_t_11 = tube_d_c_m_xz*v->tube_q_x - v->axis_x_tube_axes2_y*tube_M_aa_t -
-        v->axis_y_tube_axes2_y*tube_M_aa_t_3 - v->axis_z_tube_axes2_y*tube_M_aa_t_5 -
-        tube_d_c_m_xx*v->tube_q_z + v->tube_M_ta_t_20*v->tube_q_y -
-        v->tube_M_ta_t_17*v->tube_q_z;
-    v->tube_M_aa_t_12 = tube_d_c_m_xx*v->tube_q_y - v->axis_x_tube_axes2_z*tube_M_aa_t -
-        v->axis_y_tube_axes2_z*tube_M_aa_t_3 - v->axis_z_tube_axes2_z*tube_M_aa_t_5 -
-        tube_d_c_m_xy*v->tube_q_x + v->tube_M_ta_t_21*v->tube_q_y -
-        v->tube_M_ta_t_18*v->tube_q_z;
-    v->tube_M_aa_t_13 = v->tube_q_x*(v->axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-        v->axis_y_tube_axes2_z*tube_d_c_m_t_4 + v->axis_z_tube_axes2_z*tube_d_c_m_t_6) -
-        v->axis_x_tube_axes2_y*tube_M_aa_t_2 - v->axis_y_tube_axes2_y*tube_M_aa_t_4 -
-        v->axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_d_c_m_yx*v->tube_q_z +
-        v->tube_M_ta_t_14*v->tube_q_z - v->tube_M_ta_t_20*v->tube_q_x;
-    v->tube_M_aa_t_14 = tube_d_c_m_yx*v->tube_q_y - v->axis_x_tube_axes2_z*tube_M_aa_t_2 -
-        v->axis_y_tube_axes2_z*tube_M_aa_t_4 - v->axis_z_tube_axes2_z*tube_M_aa_t_6 -
-        v->tube_q_x*(v->axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-        v->axis_y_tube_axes2_y*tube_d_c_m_t_4 + v->axis_z_tube_axes2_y*tube_d_c_m_t_6) +
-        v->tube_M_ta_t_15*v->tube_q_z - v->tube_M_ta_t_21*v->tube_q_x;
-    v->tube_M_aa_t_15 = v->tube_q_y*(v->axis_x_tube_axes2_x*tube_M_aa_t_7 +
-        v->axis_y_tube_axes2_x*tube_M_aa_t_8 + v->axis_z_tube_axes2_x*tube_M_aa_t_9) -
-        v->tube_q_x*(v->axis_x_tube_axes2_y*tube_M_aa_t_7 +
-        v->axis_y_tube_axes2_y*tube_M_aa_t_8 + v->axis_z_tube_axes2_y*tube_M_aa_t_9) -
-        tube_dalpha_c_m_zz + v->tube_M_ta_t_18*v->tube_q_x - v->tube_M_ta_t_15*v->tube_q_y;
+    v->tube_M_aa_t_8 = tube_d_c_m_xy*v->tube_q_z - tube_d_c_m_xz*v->tube_q_y +
+        v->tube_M_ta_t_10*v->tube_q_y - v->tube_M_ta_t_7*v->tube_q_z -
+        v->axis_x_tube_axes2_x*tube_M_aa_t - v->axis_y_tube_axes2_x*tube_M_aa_t_3 -
+        v->axis_z_tube_axes2_x*tube_M_aa_t_5;
+    v->tube_M_aa_t_9 = tube_d_c_m_xz*v->tube_q_x - tube_d_c_m_xx*v->tube_q_z +
+        v->tube_M_ta_t_11*v->tube_q_y - v->tube_M_ta_t_8*v->tube_q_z -
+        v->axis_x_tube_axes2_y*tube_M_aa_t - v->axis_y_tube_axes2_y*tube_M_aa_t_3 -
+        v->axis_z_tube_axes2_y*tube_M_aa_t_5;
+    v->tube_M_aa_t_10 = tube_d_c_m_xx*v->tube_q_y - tube_d_c_m_xy*v->tube_q_x +
+        v->tube_M_ta_t_12*v->tube_q_y - v->tube_M_ta_t_9*v->tube_q_z -
+        v->axis_x_tube_axes2_z*tube_M_aa_t - v->axis_y_tube_axes2_z*tube_M_aa_t_3 -
+        v->axis_z_tube_axes2_z*tube_M_aa_t_5;
+    v->tube_M_aa_t_11 = v->axis_x_tube_axes2_z*tube_d_c_m_t_2*v->tube_q_x -
+        tube_d_c_m_yx*v->tube_q_z + v->tube_M_ta_t_5*v->tube_q_z -
+        v->tube_M_ta_t_11*v->tube_q_x - v->axis_x_tube_axes2_y*tube_M_aa_t_2 -
+        v->axis_y_tube_axes2_y*tube_M_aa_t_4 - v->axis_z_tube_axes2_y*tube_M_aa_t_6;
+    v->tube_M_aa_t_12 = tube_d_c_m_yx*v->tube_q_y -
+        v->axis_x_tube_axes2_y*tube_d_c_m_t_2*v->tube_q_x + v->tube_M_ta_t_6*v->tube_q_z -
+        v->tube_M_ta_t_12*v->tube_q_x - v->axis_x_tube_axes2_z*tube_M_aa_t_2 -
+        v->axis_y_tube_axes2_z*tube_M_aa_t_4 - v->axis_z_tube_axes2_z*tube_M_aa_t_6;
+    v->tube_M_aa_t_13 = v->axis_x_tube_axes2_x*tube_M_aa_t_7*v->tube_q_y -
+        v->axis_x_tube_axes2_y*tube_M_aa_t_7*v->tube_q_x + v->tube_M_ta_t_9*v->tube_q_x -
+        v->tube_M_ta_t_6*v->tube_q_y - tube_dalpha_c_m_zz;
 }
 
 INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
 {
     /* (tube-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real tube_qdd_1_o_t = R(1.35)*v->tube_nu_1;
-    const real tube_qdd_1_o_t_2 = R(1.35)*v->tube_nu_2;
-    const real tube_qdd_1_o_t_3 = R(1.35)*v->tube_nu_3;
-    const real tube_qdd_1_o = v->inv_tube_w_1_t_75*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_76
-        - v->tube_m2_w_1_t*tube_qdd_1_o_t_2 + v->tube_m1_w_1_t*tube_qdd_1_o_t +
-        v->tube_m3_w_1_t*tube_qdd_1_o_t_3 + v->tube_rel_o_in_axes2_z*v->tube_w_1_t_77);
+    const real tube_qdd_1_o_t = v->inv_tube_qd_1_t*(v->tube_m2_w_1_t*v->tube_nu_2 +
+        v->tube_m3_w_1_t*v->tube_nu_3 - v->tube_m1_w_1_t*v->tube_nu_1);
     /* (tube-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real tube_qdd_2_o_t = v->inv_tube_w_1_t_63*(tube_qdd_1_o_t_2*v->tube_w_1_t_67 +
-        v->tube_rel_o_in_axes2_y*v->tube_w_1_t_64 + tube_qdd_1_o_t*v->tube_w_1_t_66 +
-        tube_qdd_1_o_t_3*v->tube_w_1_t_68 + v->tube_rel_o_in_axes2_z*v->tube_w_1_t_65 -
-        tube_qdd_1_o*v->tube_w_1_t_69);
-    const real tube_qdd_2_o_t_2 =
-        v->inv_tube_w_1_t_49*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_50 +
-        v->inv_tube_w_1_t_49*v->tube_rel_o_in_axes2_z + tube_qdd_1_o_t*v->tube_w_1_t_51 +
-        tube_qdd_1_o_t_3*v->tube_w_1_t_52 + tube_qdd_1_o*v->tube_w_1_t_58 +
-        tube_qdd_2_o_t*v->tube_w_1_t_53);
-    const real tube_qdd_2_o_t_3 = v->tube_rel_o_in_axes2_y*v->tube_w_1_t_14 +
-        tube_qdd_1_o_t*v->tube_w_1_t_15 + tube_qdd_1_o_t_3*v->tube_w_1_t_16 -
-        tube_qdd_1_o*v->tube_w_1_t_29 - tube_qdd_2_o_t*v->tube_w_1_t_25 +
-        tube_qdd_2_o_t_2*v->tube_w_1_t_21 +
-        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(v->tube_rel_o_in_axes2_y*v->tube_w_1_t_34 +
-        tube_qdd_1_o_t*v->tube_w_1_t_35 + tube_qdd_1_o_t_3*v->tube_w_1_t_36 +
-        tube_qdd_1_o*v->tube_w_1_t_45 + tube_qdd_2_o_t*v->tube_w_1_t_41 -
-        tube_qdd_2_o_t_2*v->tube_w_1_t_37);
-    const real tube_qdd_2_o = v->inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+    const real tube_qdd_2_o = v->inv_tube_qd_1_t*(v->tube_m2_w_2_t*v->tube_nu_2 +
+        v->tube_nu_1*v->tube_w_1_t + v->tube_nu_3*v->tube_w_1_t_2);
     /* (tube-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real tube_alpha_1_o_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qdd_1_o;
-    const real tube_alpha_1_o_in_axes2_y = -v->tube_c_2*tube_qdd_1_o;
+    const real tube_alpha_1_o_t = v->tube_e_1_in_axes2_x*tube_qdd_1_o_t;
+    const real tube_alpha_1_o_in_axes2_y = v->tube_c_2*tube_qdd_1_o_t;
     /* (tube-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real tube_alpha_2_o_in_axes2_x = v->tube_W_2_in_axes2_yz +
-        tube_alpha_1_o_in_axes2_x;
-    const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y -
-        v->tube_W_2_in_axes2_xz;
+    const real tube_alpha_2_o_in_axes2_x = v->tube_W_2_in_axes2_yz - tube_alpha_1_o_t;
+    const real tube_alpha_2_o_in_axes2_y = v->tube_zeta_2_in_axes2_y +
+        tube_alpha_1_o_in_axes2_y;
     /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
     const real tube_B_2_o_in_axes2_xy = v->tube_W_2_in_axes2_xy - tube_qdd_2_o;
     const real tube_B_2_o_in_axes2_yx = v->tube_W_2_in_axes2_xy + tube_qdd_2_o;
-    const real tube_B_2_o_in_axes2_zx = v->tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+    const real tube_B_2_o_in_axes2_zx = -v->tube_zeta_2_in_axes2_y -
+        tube_alpha_2_o_in_axes2_y;
     const real tube_B_2_o_in_axes2_zy = v->tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
     /* (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x -
         v->tube_g_in_axes2_x + v->axis_x_tube_axes2_y*v->tube_u_1_y +
         v->axis_x_tube_axes2_z*v->tube_u_1_z;
-    const real tube_acc_3_o_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y -
+    const real tube_acc_3_o_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y +
         v->tube_bias_t_2 + v->tube_q_3*tube_qdd_2_o;
-    const real tube_acc_3_o_in_axes2_z = v->tube_bias_t - v->tube_g_in_axes2_z -
-        v->tube_bias_t_5 - tube_alpha_2_o_in_axes2_y*v->tube_q_3;
+    const real tube_acc_3_o_in_axes2_z = -v->tube_g_in_axes2_z - v->tube_bias_t_5 -
+        v->tube_bias_t - tube_alpha_2_o_in_axes2_y*v->tube_q_3;
     /* (tube-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] -
+    const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*m->tube_link3_mass[i] +
         v->tube_f_3_t_2 + tube_alpha_1_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
         tube_B_2_o_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
-    const real tube_f_3_o_in_axes2_y = v->tube_f_3_t_3 -
-        tube_alpha_1_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+    const real tube_f_3_o_in_axes2_y = v->tube_f_3_t_3 +
         tube_B_2_o_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i];
+        tube_acc_3_o_in_axes2_y*m->tube_link3_mass[i] +
+        tube_alpha_1_o_t*m->tube_h_3_in_spec2_y[i];
     const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
         v->tube_f_3_t_4 + tube_acc_3_o_in_axes2_z*m->tube_link3_mass[i] -
         tube_B_2_o_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
     /* (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
     const real tube_mu_2_o_in_axes2_x = v->tube_mu_2_t_4 + v->tube_mu_2_t +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_x +
+        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_t -
+        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i] +
         tube_B_2_o_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
-        tube_B_2_o_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
-        tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_z[i];
     const real tube_mu_2_o_in_axes2_y = tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
         v->tube_mu_2_t_5 - v->tube_mu_2_t_2 +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_o_in_axes2_y -
+        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] +
         tube_B_2_o_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
         tube_B_2_o_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+        tube_acc_3_o_in_axes2_z*m->tube_h_3_in_spec2_x[i];
     const real tube_mu_2_o_in_axes2_z = tube_acc_3_o_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
         v->tube_mu_2_t_6 + v->tube_mu_2_t_3 +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_in_axes2_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
         tube_B_2_o_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_o_in_axes2_y +
         tube_acc_3_o_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
+        tube_B_2_o_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_o_t;
     /* (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
         tube_f_3_o_in_axes2_z*v->tube_q_3;
     const real tube_N_2_o_in_axes2_z = tube_f_3_o_in_axes2_y*v->tube_q_3 +
         tube_mu_2_o_in_axes2_z;
-    /* (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real tube_G_o_t = v->inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-    const real tube_G_o_t_2 = v->inv_tube_w_1_t_33*tube_G_o_t*v->tube_w_1_t_17;
-    const real tube_G_o_t_3 = v->inv_tube_w_1_t_49*(tube_G_o_t*v->tube_w_1_t_21 -
-        tube_G_o_t_2*v->tube_w_1_t_37);
-    const real tube_G_o_t_4 = v->inv_tube_w_1_t_63*(tube_G_o_t_2*v->tube_w_1_t_41 -
-        tube_G_o_t*v->tube_w_1_t_25 + tube_G_o_t_3*v->tube_w_1_t_53);
-    const real tube_G_o_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_o_in_axes2_y*v->tube_c_2 -
-        v->tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x + tube_G_o_t*v->tube_w_1_t_29 -
-        tube_G_o_t_2*v->tube_w_1_t_45 - tube_G_o_t_3*v->tube_w_1_t_58 +
-        tube_G_o_t_4*v->tube_w_1_t_69);
-    const real tube_G_o_in_axes2_y = tube_G_o_t*v->tube_w_1_t_14 +
-        tube_G_o_t_2*v->tube_w_1_t_34 + tube_G_o_t_3*v->tube_w_1_t_50 +
-        tube_G_o_t_4*v->tube_w_1_t_64 - tube_G_o_t_5*v->tube_w_1_t_76;
-    const real tube_G_o_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_o_t_3 +
-        tube_G_o_t_4*v->tube_w_1_t_65 - tube_G_o_t_5*v->tube_w_1_t_77;
+    const real tube_N_2_o_t = tube_N_2_o_in_axes2_y*v->tube_c_2 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x;
     /* (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
        weight along all degrees of freedom */
-    const real tube_G_m1_o_t = tube_G_o_t*v->tube_w_1_t_15 + tube_G_o_t_2*v->tube_w_1_t_35 +
-        tube_G_o_t_3*v->tube_w_1_t_51 + tube_G_o_t_4*v->tube_w_1_t_66 -
-        tube_G_o_t_5*v->tube_m1_w_1_t;
-    const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+    const real tube_G_m1_o_t = v->inv_tube_w_1_t_3*(tube_N_2_o_t*v->tube_m1_w_1_t -
+        tube_N_2_o_in_axes2_z*v->tube_w_1_t);
     /* (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and
        weight along all degrees of freedom */
-    const real tube_G_m2_o_t = tube_G_o_t_4*v->tube_w_1_t_67 + tube_G_o_t_5*v->tube_m2_w_1_t;
-    const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
+    const real tube_G_m2_o = v->inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*v->tube_m2_w_2_t +
+        tube_N_2_o_t*v->tube_m2_w_1_t);
     /* (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and
        weight along all degrees of freedom */
-    const real tube_G_m3_o_t = tube_G_o_t*v->tube_w_1_t_16 + tube_G_o_t_2*v->tube_w_1_t_36 +
-        tube_G_o_t_3*v->tube_w_1_t_52 + tube_G_o_t_4*v->tube_w_1_t_68 -
-        tube_G_o_t_5*v->tube_m3_w_1_t;
-    const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
+    const real tube_G_m3_o = v->inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*v->tube_w_1_t_2 +
+        tube_N_2_o_t*v->tube_m3_w_1_t);
     /* (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v->tube_end_p2_in_axes2_y -
         tube_G_m3_o*v->tube_end_p3_in_axes2_z;
-    const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v->tube_n_m2_in_axes2_y -
-        tube_G_m1_o*v->tube_end_p1_in_axes2_z;
-    const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v->tube_n_m1_in_axes2_z +
-        tube_G_m3_o*v->tube_n_m3_in_axes2_z;
+    const real tube_G_m_o_in_axes2_y = tube_G_m1_o_t*v->tube_end_p1_in_axes2_z +
+        tube_G_m2_o*v->tube_n_m2_in_axes2_y;
+    const real tube_G_m_o_in_axes2_z = tube_G_m3_o*v->tube_n_m3_in_axes2_z -
+        tube_G_m1_o_t*v->tube_n_m1_in_axes2_z;
     /* (tube-U) velocity and gravity terms of the leg force */
-    v->tube_U_x = v->axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-        v->axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
-        v->axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-    v->tube_U_y = v->axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-        v->axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
-        v->axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-    v->tube_U_z = v->axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-        v->axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
-        v->axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+    v->tube_U_x = v->axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x;
+    v->tube_U_y = v->axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x;
+    v->tube_U_z = v->axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x;
     /* (Z_a) rotational part of Z */
-    v->tube_Z_a_t = v->axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+    v->tube_Z_a_t = v->tube_U_z*v->tube_q_y - v->tube_U_y*v->tube_q_z +
+        v->axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
         v->axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
-        v->axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + v->tube_U_z*v->tube_q_y -
-        v->tube_U_y*v->tube_q_z;
-    v->tube_Z_a_t_2 = v->axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+        v->axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z;
+    v->tube_Z_a_t_2 = v->tube_U_x*v->tube_q_z - v->tube_U_z*v->tube_q_x +
+        v->axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
         v->axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
-        v->axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + v->tube_U_x*v->tube_q_z -
-        v->tube_U_z*v->tube_q_x;
-    v->tube_Z_a_t_3 = v->axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+        v->axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z;
+    v->tube_Z_a_t_3 = v->tube_U_y*v->tube_q_x - v->tube_U_x*v->tube_q_y +
+        v->axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
         v->axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
-        v->axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + v->tube_U_y*v->tube_q_x -
-        v->tube_U_x*v->tube_q_y;
+        v->axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z;
+}
+
+INLINE void stage_tube_constraint_bias_dynamics(values_tube *v)
+{
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_in_axes2_y = v->tube_bias_t_4 + v->tube_bias_t_2;
+    const real tube_bias_in_axes2_z = -v->tube_bias_t_5 - 2*v->tube_bias_t;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real tube_rel_o_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_u_1_x +
+        v->axis_y_tube_axes2_y*v->tube_u_1_y + v->axis_y_tube_axes2_z*v->tube_u_1_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_o_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_u_1_x +
+        v->axis_z_tube_axes2_y*v->tube_u_1_y + v->axis_z_tube_axes2_z*v->tube_u_1_z -
+        tube_bias_in_axes2_z;
+    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c1 = tube_rel_o_in_axes2_y - v->tube_m1_c1_t*v->tube_nu_1 -
+        v->tube_m3_c1_t*v->tube_nu_3;
+    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c2 = tube_rel_o_in_axes2_z + v->tube_m3_c2*v->tube_nu_3 -
+        v->tube_m1_c2_t*v->tube_nu_1;
+    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c3 = v->inv_tube_size_c3*v->tube_nu_2 + v->tube_mu1_c3*v->tube_nu_1 -
+        v->tube_mu3_c3_t*v->tube_nu_3;
 }
 
 INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v)
 {
     /* (tube-alpha_1) angular acceleration of link 1 */
-    const real tube_alpha_1_in_axes2_x = v->tube_e_1_in_axes2_x*v->tube_qdd_1;
-    const real tube_alpha_1_in_axes2_y = -v->tube_c_2*v->tube_qdd_1;
+    const real tube_alpha_1_t = v->tube_e_1_in_axes2_x*v->tube_qdd_1_t;
+    const real tube_alpha_1_in_axes2_y = v->tube_c_2*v->tube_qdd_1_t;
     /* (tube-alpha_2) angular acceleration of link 2 */
-    const real tube_alpha_2_in_axes2_x = v->tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
-    const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - v->tube_W_2_in_axes2_xz;
+    const real tube_alpha_2_in_axes2_x = v->tube_W_2_in_axes2_yz - tube_alpha_1_t;
+    const real tube_alpha_2_in_axes2_y = v->tube_zeta_2_in_axes2_y + tube_alpha_1_in_axes2_y;
     /* (tube-B_2) acceleration tensor of link 2 */
     const real tube_B_2_in_axes2_xy = v->tube_W_2_in_axes2_xy - v->tube_qdd_2;
     const real tube_B_2_in_axes2_yx = v->tube_W_2_in_axes2_xy + v->tube_qdd_2;
-    const real tube_B_2_in_axes2_zx = v->tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
+    const real tube_B_2_in_axes2_zx = -v->tube_zeta_2_in_axes2_y - tube_alpha_2_in_axes2_y;
     const real tube_B_2_in_axes2_zy = v->tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
     /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
     const real tube_acc_3_in_axes2_x = v->tube_S_ddot_in_axes2_x - v->tube_g_in_axes2_x;
-    const real tube_acc_3_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y -
+    const real tube_acc_3_in_axes2_y = v->tube_bias_t_4 - v->tube_g_in_axes2_y +
         v->tube_bias_t_2 + v->tube_q_3*v->tube_qdd_2;
-    const real tube_acc_3_in_axes2_z = v->tube_bias_t - v->tube_g_in_axes2_z -
-        v->tube_bias_t_5 - tube_alpha_2_in_axes2_y*v->tube_q_3;
+    const real tube_acc_3_in_axes2_z = -v->tube_g_in_axes2_z - v->tube_bias_t_5 -
+        v->tube_bias_t - tube_alpha_2_in_axes2_y*v->tube_q_3;
     /* (tube-f_3) inertia force of link 3 less its weight */
-    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] -
+    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*m->tube_link3_mass[i] +
         v->tube_f_3_t_2 + tube_alpha_1_in_axes2_y*m->tube_h_3_in_spec2_y[i] -
         tube_B_2_in_axes2_xy*m->tube_h_3_in_spec2_z[i];
-    const real tube_f_3_in_axes2_y = v->tube_f_3_t_3 -
-        tube_alpha_1_in_axes2_x*m->tube_h_3_in_spec2_y[i] +
+    const real tube_f_3_in_axes2_y = v->tube_f_3_t_3 +
         tube_B_2_in_axes2_yx*m->tube_h_3_in_spec2_x[i] +
-        tube_acc_3_in_axes2_y*m->tube_link3_mass[i];
+        tube_acc_3_in_axes2_y*m->tube_link3_mass[i] +
+        tube_alpha_1_t*m->tube_h_3_in_spec2_y[i];
     const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*m->tube_h_3_in_spec2_x[i] -
         v->tube_f_3_t_4 + tube_acc_3_in_axes2_z*m->tube_link3_mass[i] -
         tube_B_2_in_axes2_zy*m->tube_h_3_in_spec2_z[i];
     /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     const real tube_mu_2_in_axes2_x = v->tube_mu_2_t_4 + v->tube_mu_2_t +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_x +
+        tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_t -
+        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i] +
         tube_B_2_in_axes2_zy*m->tube_Sigma_2_in_axes2_yy[i] -
         tube_B_2_in_axes2_zx*m->tube_J_group_2_in_axes2_xy[i] -
-        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i] +
-        tube_B_2_in_axes2_yx*m->tube_J_group_2_in_axes2_xz[i] -
-        tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_y[i];
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_z[i];
     const real tube_mu_2_in_axes2_y = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_y[i] -
         v->tube_mu_2_t_5 - v->tube_mu_2_t_2 +
-        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y +
+        m->tube_Sigma_2_in_axes2_zz[i]*tube_alpha_1_in_axes2_y -
+        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i] +
         tube_B_2_in_axes2_zy*m->tube_J_group_2_in_axes2_xy[i] -
         tube_B_2_in_axes2_zx*m->tube_Sigma_2_in_axes2_xx[i] -
-        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_J_group_2_in_axes2_yz[i];
+        tube_acc_3_in_axes2_z*m->tube_h_3_in_spec2_x[i];
     const real tube_mu_2_in_axes2_z = tube_acc_3_in_axes2_x*m->tube_h_3_in_spec2_z[i] -
         v->tube_mu_2_t_6 + v->tube_mu_2_t_3 +
-        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_in_axes2_x +
-        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
         tube_B_2_in_axes2_yx*m->tube_Sigma_2_in_axes2_xx[i] +
+        m->tube_J_group_2_in_axes2_yz[i]*tube_alpha_1_in_axes2_y +
         tube_acc_3_in_axes2_y*m->tube_h_3_in_spec2_x[i] -
-        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i];
+        tube_B_2_in_axes2_xy*m->tube_Sigma_2_in_axes2_yy[i] -
+        m->tube_J_group_2_in_axes2_xz[i]*tube_alpha_1_t;
     /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
     const real tube_N_2_in_axes2_z = tube_f_3_in_axes2_y*v->tube_q_3 + tube_mu_2_in_axes2_z;
-    /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real tube_G_t = v->inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
-    const real tube_G_t_2 = v->inv_tube_w_1_t_33*tube_G_t*v->tube_w_1_t_17;
-    const real tube_G_t_3 = v->inv_tube_w_1_t_49*(tube_G_t*v->tube_w_1_t_21 -
-        tube_G_t_2*v->tube_w_1_t_37);
-    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 -
-        tube_G_t*v->tube_w_1_t_25 + tube_G_t_3*v->tube_w_1_t_53);
-    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_N_2_in_axes2_y*v->tube_c_2 -
-        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x + tube_G_t*v->tube_w_1_t_29 -
-        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 +
-        tube_G_t_4*v->tube_w_1_t_69);
-    const real tube_G_in_axes2_y = tube_G_t*v->tube_w_1_t_14 + tube_G_t_2*v->tube_w_1_t_34 +
-        tube_G_t_3*v->tube_w_1_t_50 + tube_G_t_4*v->tube_w_1_t_64 -
-        tube_G_t_5*v->tube_w_1_t_76;
-    const real tube_G_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_t_3 +
-        tube_G_t_4*v->tube_w_1_t_65 - tube_G_t_5*v->tube_w_1_t_77;
+    const real tube_N_2_t = tube_N_2_in_axes2_y*v->tube_c_2 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x;
     /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
        all degrees of freedom */
-    const real tube_G_m1_t = tube_G_t*v->tube_w_1_t_15 + tube_G_t_2*v->tube_w_1_t_35 +
-        tube_G_t_3*v->tube_w_1_t_51 + tube_G_t_4*v->tube_w_1_t_66 -
-        tube_G_t_5*v->tube_m1_w_1_t;
-    const real tube_G_m1 = R(1.35)*tube_G_m1_t;
+    const real tube_G_m1_t = v->inv_tube_w_1_t_3*(tube_N_2_t*v->tube_m1_w_1_t -
+        tube_N_2_in_axes2_z*v->tube_w_1_t);
     /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
        all degrees of freedom */
-    const real tube_G_m2_t = tube_G_t_4*v->tube_w_1_t_67 + tube_G_t_5*v->tube_m2_w_1_t;
-    const real tube_G_m2 = R(1.35)*tube_G_m2_t;
+    const real tube_G_m2 = v->inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*v->tube_m2_w_2_t +
+        tube_N_2_t*v->tube_m2_w_1_t);
     /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
        all degrees of freedom */
-    const real tube_G_m3_t = tube_G_t*v->tube_w_1_t_16 + tube_G_t_2*v->tube_w_1_t_36 +
-        tube_G_t_3*v->tube_w_1_t_52 + tube_G_t_4*v->tube_w_1_t_68 -
-        tube_G_t_5*v->tube_m3_w_1_t;
-    const real tube_G_m3 = R(1.35)*tube_G_m3_t;
+    const real tube_G_m3 = v->inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*v->tube_w_1_t_2 +
+        tube_N_2_t*v->tube_m3_w_1_t);
     /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real tube_G_m_in_axes2_x = -tube_G_m2*v->tube_end_p2_in_axes2_y -
         tube_G_m3*v->tube_end_p3_in_axes2_z;
-    const real tube_G_m_in_axes2_y = tube_G_m2*v->tube_n_m2_in_axes2_y -
-        tube_G_m1*v->tube_end_p1_in_axes2_z;
-    const real tube_G_m_in_axes2_z = tube_G_m1*v->tube_n_m1_in_axes2_z +
-        tube_G_m3*v->tube_n_m3_in_axes2_z;
+    const real tube_G_m_in_axes2_y = tube_G_m1_t*v->tube_end_p1_in_axes2_z +
+        tube_G_m2*v->tube_n_m2_in_axes2_y;
+    const real tube_G_m_in_axes2_z = tube_G_m3*v->tube_n_m3_in_axes2_z -
+        tube_G_m1_t*v->tube_n_m1_in_axes2_z;
     /* (tube-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->tube_c_x = -v->axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_x*tube_G_in_axes2_y - v->axis_z_tube_axes2_x*tube_G_in_axes2_z;
-    v->tube_c_y = -v->axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_y*tube_G_in_axes2_y - v->axis_z_tube_axes2_y*tube_G_in_axes2_z;
-    v->tube_c_z = -v->axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
-        v->axis_y_tube_axes2_z*tube_G_in_axes2_y - v->axis_z_tube_axes2_z*tube_G_in_axes2_z;
+    v->tube_c_t = v->axis_x_tube_axes2_x*tube_f_3_in_axes2_x;
+    v->tube_c_t_2 = v->axis_x_tube_axes2_y*tube_f_3_in_axes2_x;
+    v->tube_c_t_3 = v->axis_x_tube_axes2_z*tube_f_3_in_axes2_x;
     /* (tube-c_m) moment of the leg on the platform without actuation */
     v->tube_c_m_x = -v->axis_x_tube_axes2_x*tube_G_m_in_axes2_x -
         v->axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
@@ -3297,11 +2912,11 @@ typedef struct {
         ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
         ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
         ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
-        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz,
-        ups_Q_zz, ups_M_ta_t_3, ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
-        ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3,
-        ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
-        ups_Z_a_t_3, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz,
+        ups_Q_yz, ups_M_ta_t, ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7,
+        ups_M_ta_t_8, ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4,
+        ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+        ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -3506,51 +3121,48 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
     const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
-        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_3 = v->axis_y_ups_axes2_x*ups_Q_t -
+        v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_y_ups_axes2_y*ups_Q_t -
+        v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_z*ups_Q_t - v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_y*ups_Q_t_2;
     const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
-    v->ups_Q_xx = -2*ups_Q_t_9;
-    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
-        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
-    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+    const real ups_Q_t_9 = v->axis_y_ups_axes2_x*ups_Q_t_3 + v->axis_z_ups_axes2_x*ups_Q_t_6;
+    v->ups_Q_t_10 = 2*ups_Q_t_9;
+    const real ups_Q_t_11 = v->axis_y_ups_axes2_y*ups_Q_t_4 + v->axis_z_ups_axes2_y*ups_Q_t_7;
+    v->ups_Q_yy = -2*ups_Q_t_11;
+    v->ups_Q_zz = v->ups_Q_t_10 - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_yy;
+    v->ups_Q_t_12 = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 +
+        v->axis_z_ups_axes2_x*ups_Q_t_7 + v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_x*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_3 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
-    v->ups_Q_yy = -2*ups_Q_t_10;
-    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+    v->ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
-    v->ups_Q_zz = -2*ups_Q_t_11;
     /* (M_ta) coupling block of M */
-    const real ups_M_ta_t = v->ups_Q_xy*v->ups_q_z;
-    const real ups_M_ta_t_2 = v->ups_Q_xz*v->ups_q_y;
-    v->ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-    v->ups_M_ta_t_4 = v->ups_Q_xx*v->ups_q_z - v->ups_Q_xz*v->ups_q_x;
-    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
-    v->ups_M_ta_t_6 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
-    const real ups_M_ta_t_7 = v->ups_Q_yz*v->ups_q_x;
-    v->ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-    v->ups_M_ta_t_9 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
-    v->ups_M_ta_t_10 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
-    v->ups_M_ta_t_11 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
-    v->ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+    v->ups_M_ta_t = v->ups_Q_t_10*v->ups_q_z + v->ups_Q_xz*v->ups_q_x;
+    v->ups_M_ta_t_2 = v->ups_Q_t_10*v->ups_q_y - v->ups_Q_t_12*v->ups_q_x;
+    v->ups_M_ta_t_3 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
+    const real ups_M_ta_t_4 = v->ups_Q_yz*v->ups_q_x;
+    v->ups_M_ta_t_5 = v->ups_Q_t_12*v->ups_q_z + ups_M_ta_t_4;
+    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x + v->ups_Q_t_12*v->ups_q_y;
+    v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
+    v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
+    v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
     /* (M_aa) rotational block of M */
-    v->ups_M_aa_t = v->ups_M_ta_t_10*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
-    v->ups_M_aa_t_2 = v->ups_M_ta_t_11*v->ups_q_y - v->ups_M_ta_t_8*v->ups_q_z;
-    v->ups_M_aa_t_3 = v->ups_M_ta_t_12*v->ups_q_y - v->ups_M_ta_t_9*v->ups_q_z;
-    v->ups_M_aa_t_4 = v->ups_M_ta_t_4*v->ups_q_z - v->ups_M_ta_t_11*v->ups_q_x;
-    v->ups_M_aa_t_5 = v->ups_M_ta_t_5*v->ups_q_z - v->ups_M_ta_t_12*v->ups_q_x;
-    v->ups_M_aa_t_6 = v->ups_M_ta_t_9*v->ups_q_x - v->ups_M_ta_t_5*v->ups_q_y;
+    v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_5*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_y;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_4 = v->ups_M_ta_t*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z - v->ups_M_ta_t_9*v->ups_q_x;
+    v->ups_M_aa_t_6 = v->ups_M_ta_t_6*v->ups_q_x - v->ups_M_ta_t_2*v->ups_q_y;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -3684,11 +3296,8 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -3704,14 +3313,78 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    H[(3*NU + i)*w + k] = o[3*count + at];
+    H[(4*NU + i)*w + k] = o[4*count + at];
+    H[(5*NU + i)*w + k] = o[5*count + at];
+    t->singular[k] += o[6*count + at];
+    t->total[k] += o[7*count + at];
+}
+
+INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -3733,37 +3406,36 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_t */
+    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_ups_zz */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_t_2 */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_t */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (ups-w_3) reciprocal vector 3 */
     o[0*count + k] = v.axis_x_ups_axes2_x;
     o[1*count + k] = v.axis_x_ups_axes2_y;
@@ -3779,19 +3451,6 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -3800,50 +3459,39 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_M_dynamics(m, i, &v);
     stage_tube_Z_dynamics(m, i, &v);
-    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    const real tube_gamma_c1 = v.tube_rel_o_in_axes2_y - v.tube_m1_c1_t*v.tube_nu_1 -
-        v.tube_m3_c1_t*v.tube_nu_3;
-    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-       */
-    const real tube_gamma_c2 = v.tube_rel_o_in_axes2_z + v.tube_m3_c2*v.tube_nu_3 -
-        v.tube_m1_c2_t*v.tube_nu_1;
-    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-       */
-    const real tube_gamma_c3 = v.inv_tube_size_c3*v.tube_nu_2 + v.tube_mu1_c3*v.tube_nu_1 -
-        v.tube_mu3_c3_t*v.tube_nu_3;
+    stage_tube_constraint_bias_dynamics(&v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[26*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[27*count + k], add, v.tube_Q_xy);  /* M_tt_xy_of_legs */
     gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, v.tube_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.tube_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.tube_M_ta_t_21);  /* M_ta_zz */
+    gather(&terms[28*count + k], add, v.tube_M_ta_t_4);  /* M_ta_xx_of_legs */
+    gather(&terms[29*count + k], add, v.tube_M_ta_t_5);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.tube_M_ta_t_6);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.tube_M_ta_t_7);  /* M_ta_yx_of_legs */
+    gather(&terms[30*count + k], add, v.tube_M_ta_t_8);  /* M_ta_yy_of_legs */
+    gather(&terms[11*count + k], add, v.tube_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.tube_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.tube_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[31*count + k], add, v.tube_M_ta_t_12);  /* M_ta_zz_of_legs */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.tube_M_aa_t_8);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.tube_M_aa_t_9);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xz_of_legs */
+    gather(&terms[32*count + k], add, v.tube_M_aa_t_11);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.tube_M_aa_t_12);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.tube_M_aa_t_13);  /* M_aa_zz_of_legs */
     /* (Z_t) */
-    gather(&terms[21*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) */
-    gather(&terms[24*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (tube-n_c1) unit force of the constraint wrench */
     o[0*count + k] = v.axis_y_tube_axes2_x;
     o[1*count + k] = v.axis_y_tube_axes2_y;
@@ -3852,8 +3500,9 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     o[3*count + k] = v.tube_Hk_a_1_x;
     o[4*count + k] = v.tube_Hk_a_1_y;
     o[5*count + k] = v.tube_Hk_a_1_z;
-    /* (tube-gamma_c1) */
-    o[6*count + k] = tube_gamma_c1;
+    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[6*count + k] = v.tube_gamma_c1;
     /* (tube-n_c2) unit force of the constraint wrench */
     o[7*count + k] = v.axis_z_tube_axes2_x;
     o[8*count + k] = v.axis_z_tube_axes2_y;
@@ -3862,26 +3511,26 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     o[10*count + k] = v.tube_Hk_a_2_x;
     o[11*count + k] = v.tube_Hk_a_2_y;
     o[12*count + k] = v.tube_Hk_a_2_z;
-    /* (tube-gamma_c2) */
-    o[13*count + k] = tube_gamma_c2;
+    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[13*count + k] = v.tube_gamma_c2;
     /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
     o[14*count + k] = v.tube_mu_c3_x;
     o[15*count + k] = v.tube_mu_c3_y;
     o[16*count + k] = v.tube_mu_c3_z;
-    /* (tube-gamma_c3) */
-    o[17*count + k] = tube_gamma_c3;
+    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[17*count + k] = v.tube_gamma_c3;
     o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
         (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
-        (tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
+        (v.tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
         (((v.axis_z_tube_axes2_z + v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) +
-        ((tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
-        tube_gamma_c3))));
+        ((v.tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
+        v.tube_gamma_c3))));
     o[18*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3913,21 +3562,32 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     real *M, real *Z, status_flags *t)
 {
     /* (M_tt) */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_t = sums[0*w + k];
+    const real M_tt_xx_of_legs = sums[26*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
+    const real M_tt_t_2 = sums[1*w + k];
+    const real M_tt_xy_of_legs = sums[27*w + k];
+    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_t = sums[6*w + k];
+    const real M_ta_ups_zz = sums[7*w + k];
+    const real M_ta_xx_of_legs = sums[28*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_zz + M_ta_xx_of_legs;
+    const real M_ta_t_2 = sums[8*w + k];
+    const real M_ta_xy_of_legs = sums[29*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xy = h_star_z - M_ta_t_2 + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yy_of_legs = sums[30*w + k];
+    const real M_ta_yy = M_ta_yy_of_legs - M_ta_t;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
@@ -3935,48 +3595,50 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz_of_legs = sums[31*w + k];
+    const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_t = sums[17*w + k];
+    const real M_aa_yy_of_legs = sums[32*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_t + M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
     M[1*w + k] = M_tt_xy;
     M[NV*w + k] = M_tt_xy;
     const real M_tt_xz = sums[2*w + k];
@@ -3988,7 +3650,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -3997,7 +3658,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -4006,7 +3666,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -4036,12 +3695,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] = {0};
+    real s[33] CLEARED, sums[33] CLEARED;
+    real terms_ups[33*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[33*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -4049,15 +3708,15 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
         dynamics_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 33; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         dynamics_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 33; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -4070,22 +3729,22 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[33*LANES];
     real o_ups[8*LANES];
     real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 33*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
@@ -4102,31 +3761,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -4134,37 +3768,31 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_M_dynamics(m, i, &v);
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_t */
+    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ups_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_ups_zz */
+    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_t_2 */
+    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_t */
+    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4174,61 +3802,65 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_M_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[0*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.tube_Q_xy);  /* M_tt_xy */
+    gather(&terms[20*count + k], add, v.tube_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[21*count + k], add, v.tube_Q_xy);  /* M_tt_xy_of_legs */
     gather(&terms[2*count + k], add, v.tube_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.tube_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.tube_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.tube_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[6*count + k], add, v.tube_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.tube_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.tube_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.tube_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.tube_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.tube_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.tube_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.tube_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.tube_M_ta_t_21);  /* M_ta_zz */
+    gather(&terms[22*count + k], add, v.tube_M_ta_t_4);  /* M_ta_xx_of_legs */
+    gather(&terms[23*count + k], add, v.tube_M_ta_t_5);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.tube_M_ta_t_6);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.tube_M_ta_t_7);  /* M_ta_yx_of_legs */
+    gather(&terms[24*count + k], add, v.tube_M_ta_t_8);  /* M_ta_yy_of_legs */
+    gather(&terms[11*count + k], add, v.tube_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.tube_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.tube_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[25*count + k], add, v.tube_M_ta_t_12);  /* M_ta_zz_of_legs */
     /* (M_aa) */
-    gather(&terms[15*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.tube_M_aa_t_11);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.tube_M_aa_t_12);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.tube_M_aa_t_13);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.tube_M_aa_t_14);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.tube_M_aa_t_15);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.tube_M_aa_t_8);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.tube_M_aa_t_9);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.tube_M_aa_t_10);  /* M_aa_xz_of_legs */
+    gather(&terms[26*count + k], add, v.tube_M_aa_t_11);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.tube_M_aa_t_12);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.tube_M_aa_t_13);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-}
-
-INLINE void M_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
     /* (M_tt) */
-    const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
+    const real M_tt_t = sums[0*w + k];
+    const real M_tt_xx_of_legs = sums[20*w + k];
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
+    const real M_tt_t_2 = sums[1*w + k];
+    const real M_tt_xy_of_legs = sums[21*w + k];
+    const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_t = sums[6*w + k];
+    const real M_ta_ups_zz = sums[7*w + k];
+    const real M_ta_xx_of_legs = sums[22*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_zz + M_ta_xx_of_legs;
+    const real M_ta_t_2 = sums[8*w + k];
+    const real M_ta_xy_of_legs = sums[23*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xy = h_star_z - M_ta_t_2 + M_ta_xy_of_legs;
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
+    const real M_ta_yy_of_legs = sums[24*w + k];
+    const real M_ta_yy = M_ta_yy_of_legs - M_ta_t;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
@@ -4236,28 +3868,30 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
+    const real M_ta_zz_of_legs = sums[25*w + k];
+    const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
-    const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_t = sums[17*w + k];
+    const real M_aa_yy_of_legs = sums[26*w + k];
+    const real M_aa_yy = J_star_yy - M_aa_t + M_aa_yy_of_legs;
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_xy = sums[1*w + k];
     M[1*w + k] = M_tt_xy;
     M[NV*w + k] = M_tt_xy;
     const real M_tt_xz = sums[2*w + k];
@@ -4269,7 +3903,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = M_tt_yz;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -4278,7 +3911,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -4287,7 +3919,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -4308,11 +3939,11 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[21*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[27] CLEARED, sums[27] CLEARED;
+    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
@@ -4320,15 +3951,15 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
         M_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
-        M_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 27; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -4339,20 +3970,20 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[27*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
@@ -4360,7 +3991,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, sums, o_tube);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_tube(k, k, LANES, o_tube, t);
+            any_place_ups_2(k, k, LANES, o_tube, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4369,22 +4000,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -4416,11 +4031,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, const real *V, real *terms, real *o)
 {
@@ -4438,15 +4048,8 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[5*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
-}
-
-INLINE void Z_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -4484,11 +4087,11 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[6*LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
@@ -4496,13 +4099,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
         Z_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
-        Z_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
@@ -4521,7 +4124,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_tube[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -4530,7 +4133,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
@@ -4538,7 +4141,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_tube);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_tube(k, k, LANES, o_tube, t);
+            any_place_ups_2(k, k, LANES, o_tube, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -4547,22 +4150,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -4582,30 +4169,17 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    H[(3*NU + i)*w + k] = o[3*count + at];
-    H[(4*NU + i)*w + k] = o[4*count + at];
-    H[(5*NU + i)*w + k] = o[5*count + at];
-    t->singular[k] += o[6*count + at];
-    t->total[k] += o[7*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real s[18] CLEARED;
+    real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
@@ -4616,35 +4190,19 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_ups[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -4704,11 +4262,11 @@ INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const rea
 
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] = {0};
-    real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_tube[17*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
-    Hk_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         Hk_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -4725,7 +4283,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Hk_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4738,53 +4296,27 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
+    stage_tube_constraint_bias_dynamics(&v);
     /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c1 = v.tube_rel_o_in_axes2_y - v.tube_m1_c1_t*v.tube_nu_1 -
-        v.tube_m3_c1_t*v.tube_nu_3;
+    o[0*count + k] = v.tube_gamma_c1;
     /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c2 = v.tube_rel_o_in_axes2_z + v.tube_m3_c2*v.tube_nu_3 -
-        v.tube_m1_c2_t*v.tube_nu_1;
+    o[1*count + k] = v.tube_gamma_c2;
     /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real tube_gamma_c3 = v.inv_tube_size_c3*v.tube_nu_2 + v.tube_mu1_c3*v.tube_nu_1 -
-        v.tube_mu3_c3_t*v.tube_nu_3;
-    /* (tube-gamma_c1) */
-    o[0*count + k] = tube_gamma_c1;
-    /* (tube-gamma_c2) */
-    o[1*count + k] = tube_gamma_c2;
-    /* (tube-gamma_c3) */
-    o[2*count + k] = tube_gamma_c3;
-    o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
+    o[2*count + k] = v.tube_gamma_c3;
+    o[4*count + k] = v.tube_gamma_c1 + (v.tube_gamma_c2 + v.tube_gamma_c3);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
+        LEAST_4);
 }
 
 INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -4800,10 +4332,10 @@ INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t cou
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] = {0};
-    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    constraint_bias_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraint_bias_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
     }
@@ -4819,7 +4351,7 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraint_bias_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -4832,33 +4364,6 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -4869,9 +4374,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->m_star + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z -
         v->W_p_t_4*v->h_star_x;
@@ -4901,27 +4403,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -4952,9 +4451,9 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
     /* (R_t) force that actuators and external wrench must give */
-    gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
-    gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
-    gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
+    gather(&terms[0*count + k], add, ups_c_x);  /* R_t_t */
+    gather(&terms[1*count + k], add, ups_c_y);  /* R_t_t_2 */
+    gather(&terms[2*count + k], add, ups_c_z);  /* R_t_t_3 */
     /* (R_a) */
     gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
@@ -4995,13 +4494,13 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     stage_tube_A_V_X(w, j, s, A, &v);
     stage_tube_legs_required(m, i, &v);
     /* (R_a) */
-    const real tube_R_a_t = v.tube_c_y*v.tube_q_z - v.tube_c_z*v.tube_q_y - v.tube_c_m_x;
-    const real tube_R_a_t_2 = v.tube_c_z*v.tube_q_x - v.tube_c_x*v.tube_q_z - v.tube_c_m_y;
-    const real tube_R_a_t_3 = v.tube_c_x*v.tube_q_y - v.tube_c_y*v.tube_q_x - v.tube_c_m_z;
+    const real tube_R_a_t = v.tube_c_t_3*v.tube_q_y - v.tube_c_t_2*v.tube_q_z - v.tube_c_m_x;
+    const real tube_R_a_t_2 = v.tube_c_t*v.tube_q_z - v.tube_c_t_3*v.tube_q_x - v.tube_c_m_y;
+    const real tube_R_a_t_3 = v.tube_c_t_2*v.tube_q_x - v.tube_c_t*v.tube_q_y - v.tube_c_m_z;
     /* (R_t) */
-    gather(&terms[0*count + k], add, v.tube_c_x);  /* R_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.tube_c_y);  /* R_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.tube_c_z);  /* R_t_z_of_legs */
+    gather(&terms[6*count + k], add, v.tube_c_t);  /* R_t_x_of_legs */
+    gather(&terms[7*count + k], add, v.tube_c_t_2);  /* R_t_y_of_legs */
+    gather(&terms[8*count + k], add, v.tube_c_t_3);  /* R_t_z_of_legs */
     /* (R_a) */
     gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
@@ -5028,10 +4527,8 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     o[14*count + k] = v.tube_mu_c3_z;
     o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5058,15 +4555,18 @@ INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, con
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
     /* (R_t) */
-    const real R_t_x_of_legs = sums[0*w + k];
+    const real R_t_t = sums[0*w + k];
+    const real R_t_x_of_legs = sums[6*w + k];
     const real f_p_x = s[18*w + k];
-    const real R_t_x = f_p_x - R_t_x_of_legs;
-    const real R_t_y_of_legs = sums[1*w + k];
+    const real R_t_x = f_p_x - R_t_t + R_t_x_of_legs;
+    const real R_t_t_2 = sums[1*w + k];
+    const real R_t_y_of_legs = sums[7*w + k];
     const real f_p_y = s[19*w + k];
-    const real R_t_y = f_p_y - R_t_y_of_legs;
-    const real R_t_z_of_legs = sums[2*w + k];
+    const real R_t_y = f_p_y - R_t_t_2 + R_t_y_of_legs;
+    const real R_t_t_3 = sums[2*w + k];
+    const real R_t_z_of_legs = sums[8*w + k];
     const real f_p_z = s[20*w + k];
-    const real R_t_z = f_p_z - R_t_z_of_legs;
+    const real R_t_z = f_p_z - R_t_t_3 + R_t_z_of_legs;
     /* (R_a) */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
@@ -5090,28 +4590,34 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] = {0};
+    real s[24] CLEARED, sums[9] CLEARED;
+    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[9*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups,
+                o_ups);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
-        required_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, A, terms_tube, o_tube);
+    for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
+            required_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), 0, s, X, V, A,
+                terms_tube, o_tube);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         required_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < 9; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -5123,16 +4629,16 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
+    real s[24*LANES], sums[9*LANES];
     real o_ups[7*LANES];
     real o_tube[16*LANES];
     clear(Hk, NV*NC*LANES);
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_ups);
@@ -5155,22 +4661,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -5233,11 +4723,11 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t 
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -5260,7 +4750,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5281,22 +4771,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -5332,18 +4806,16 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
     /* (tube-qd_1) rate of joint 1 */
-    o[0*count + k] = v.tube_qd_1;
+    o[0*count + k] = -v.tube_qd_1_t_2;
     /* (tube-qd_2) rate of joint 2 */
     o[1*count + k] = v.tube_qd_2;
     /* (tube-qd_3) rate of joint 3 */
     o[2*count + k] = v.tube_S_dot_in_axes2_x;
-    o[4*count + k] = v.tube_qd_1 + (v.tube_qd_2 + v.tube_S_dot_in_axes2_x);
+    o[4*count + k] = v.tube_qd_1_t_2 + (v.tube_qd_2 + v.tube_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
+        LEAST_4);
 }
 
 INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -5359,11 +4831,11 @@ INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, 
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
@@ -5386,7 +4858,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5407,33 +4879,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -5474,20 +4919,19 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_A_V_X(w, j, s, A, &v);
     /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-    const real tube_rel_in_axes2_x = v.tube_S_ddot_in_axes2_x + v.tube_W_2_t_3*v.tube_q_3;
+    const real tube_rel_in_axes2_x = v.tube_S_ddot_in_axes2_x -
+        v.tube_W_2_in_axes2_xx*v.tube_q_3;
     /* (tube-qdd_1) acceleration of joint 1 */
-    o[0*count + k] = v.tube_qdd_1;
+    o[0*count + k] = -v.tube_qdd_1_t;
     /* (tube-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.tube_qdd_2;
     /* (tube-qdd_3) acceleration of joint 3 */
     o[2*count + k] = tube_rel_in_axes2_x;
-    o[4*count + k] = v.tube_qdd_1 + (v.tube_qdd_2 + tube_rel_in_axes2_x);
+    o[4*count + k] = v.tube_qdd_1_t + (v.tube_qdd_2 + tube_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
+        LEAST_4);
 }
 
 INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t count, const real
@@ -5503,11 +4947,11 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
@@ -5530,7 +4974,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5551,22 +4995,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -5605,10 +5033,10 @@ INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, 
 
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] = {0};
-    real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    constraints_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraints_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -5624,7 +5052,7 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real o_tube[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraints_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -5637,33 +5065,6 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -5728,9 +5129,9 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
     stage_tube_legs_required(m, i, &v);
     /* (tube-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    o[0*count + k] = v.tube_c_x;
-    o[1*count + k] = v.tube_c_y;
-    o[2*count + k] = v.tube_c_z;
+    o[0*count + k] = -v.tube_c_t;
+    o[1*count + k] = -v.tube_c_t_2;
+    o[2*count + k] = -v.tube_c_t_3;
     /* (tube-c_m) moment of the leg on the platform without actuation */
     o[3*count + k] = v.tube_c_m_x;
     o[4*count + k] = v.tube_c_m_y;
@@ -5757,10 +5158,8 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
     o[20*count + k] = v.tube_mu_c3_z;
     o[21*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5793,19 +5192,23 @@ INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const r
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] = {0};
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    real o_tube[22*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED;
+    real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real o_tube[22*LEGS(LEGS_OF_tube)] CLEARED;
     clear(leg_force, 6*NL);
     clear(actuator, 18);
     clear(constraint_direction, 6*NC);
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
-        legs_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
+    for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
+            legs_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
@@ -5816,22 +5219,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -5867,11 +5254,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -5900,12 +5282,6 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3);
 }
 
-INLINE void potential_place_tube(size_t k, size_t at, size_t count, const real *o, status_flags
-    *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -5918,25 +5294,31 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups,
+                o_ups);
+        }
     }
-    for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
-        potential_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
+    for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
+            potential_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube,
+                o_tube);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
-        potential_place_tube(0, i, LEGS(LEGS_OF_tube), o_tube, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
@@ -6026,22 +5408,18 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-w_1) force part of reciprocal wrench 1 */
+    /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
     const real tube_pivot_size = magnitude(v.tube_root_1_t);
     const real tube_pivot_size_2 = magnitude(v.tube_q_3_t);
     const real tube_pivot_size_3 = magnitude(v.tube_f_c1_t);
     const real tube_pivot_size_4 = magnitude(v.tube_size_c3);
-    const real tube_pivot_size_5 = magnitude(v.tube_w_1_t_13);
-    const real tube_pivot_size_6 = magnitude(v.tube_w_1_t_33);
-    const real tube_pivot_size_7 = magnitude(v.tube_w_1_t_49);
-    const real tube_pivot_size_8 = magnitude(v.tube_w_1_t_63);
-    const real tube_pivot_size_9 = magnitude(v.tube_w_1_t_75);
+    const real tube_pivot_size_5 = magnitude(v.tube_w_1_t_3);
+    const real tube_pivot_size_6 = magnitude(v.tube_qd_1_t);
     const real tube_least_pivots =
-        lesser(lesser(lesser(lesser(lesser(lesser(lesser(lesser(R(0.7407407407407407)*root(tube_pivot_size),
+        lesser(lesser(lesser(lesser(lesser(R(0.7407407407407407)*root(tube_pivot_size),
         R(0.7407407407407407)*root(tube_pivot_size_2)), tube_pivot_size_3),
-        tube_pivot_size_4), R(0.7407407407407407)*tube_pivot_size_5), tube_pivot_size_6),
-        tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
-        R(0.7407407407407407)*tube_pivot_size_9);
+        tube_pivot_size_4), tube_pivot_size_5), tube_pivot_size_6);
     /* (spread) */
     const real tube_spread_t = m->b_c_in_platform_x - m->tube_platform_point_x[i];
     const real tube_spread_t_2 = m->b_c_in_platform_y - m->tube_platform_point_y[i];
@@ -6070,7 +5448,7 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
     o[12*count + k] = v.tube_mu_c3_x;
     o[13*count + k] = v.tube_mu_c3_y;
     o[14*count + k] = v.tube_mu_c3_z;
-    /* (tube-w_1) */
+    /* (tube-G) */
     o[15*count + k] = tube_least_pivots;
     o[17*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
         (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
@@ -6079,10 +5457,8 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
         v.tube_mu_c3_y) + (v.tube_mu_c3_z + tube_least_pivots)));
     o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
-        UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
-        LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
+        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -6122,9 +5498,9 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[2] = {0};
-    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] = {0};
+    real s[18] CLEARED, sums[2] CLEARED;
+    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     clear(reach, NL);
     values v;
@@ -6374,7 +5750,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int tricept_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real *Z_out,
     real *H_out)
 {
-    real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
+    real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6586,8 +5962,8 @@ int tricept_inverse_dynamics(const prepared *m, const real *X, const real *V, co
     real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
+        beside_1[NV*NV] = {0}, solve_1[NV] CLEARED, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6644,9 +6020,9 @@ int tricept_forward_dynamics(const prepared *m, const real *X, const real *V, co
     const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
-        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
-        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
+        CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED, subtract_1[NV] CLEARED, negative_1[3] CLEARED,
+        join_1[9] = {0}, solve_1[(NV + NC)] CLEARED, work[(NV + NC)*(PADDED(NV + NC))];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -6731,8 +6107,8 @@ int tricept_leg_reactions(const prepared *m, const real *X, const real *V, const
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {3, 3, 3};
-    real split_1[3] = {0}, split_2[3] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
-        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[6*NL] = {0};
+    real split_1[3] = {0}, split_2[3] = {0}, leg_force[6*NL] CLEARED, actuator[18] CLEARED,
+        constraint_direction[6*NC] CLEARED, add_forces_1[6*NL] CLEARED, forces[6*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -6753,7 +6129,7 @@ int tricept_leg_reactions(const prepared *m, const real *X, const real *V, const
 int tricept_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -6774,8 +6150,8 @@ int tricept_condition(const prepared *m, const real *X, real *sigma_out, real *l
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6809,8 +6185,9 @@ int tricept_condition_constrained(const prepared *m, const real *X, real *sigma_
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        beside_1[NV*NV] = {0}, choose_length_1[1] CLEARED, divide_rows_1[NV*NV] CLEARED, sigma[NV] =
+        {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6843,11 +6220,11 @@ int tricept_manipulability(const prepared *m, const real *X, real *measure_out, 
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
-        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
-        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
-        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
+        subtract_2[1] CLEARED, choose_length_2[1] CLEARED, divide_rows_2[NV*NC] CLEARED,
+        transposed_1[NC*NV] = {0}, null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0},
+        product_1[NC*NU] = {0}, singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6894,9 +6271,10 @@ int tricept_singularity_distance(const prepared *m, const real *X, real *actuato
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
-        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, beside_1[NV*NV] = {0}, subtract_1[1] CLEARED, choose_length_1[1] CLEARED,
+        divide_rows_1[NV*NV] CLEARED, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] =
+        {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -6928,8 +6306,8 @@ int tricept_singularity_distance(const prepared *m, const real *X, real *actuato
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, residual[6] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] CLEARED,
+        constraints[3] CLEARED, negative_1[3] CLEARED, residual[6] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -6948,7 +6326,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7016,7 +6394,7 @@ int tricept_forward_kinematics(const prepared *m, const real *q_actuated, const 
 
 static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, residual[NC] = {0};
+    real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7098,7 +6476,7 @@ int tricept_dissipation(const prepared *m, const real *X, const real *V, real *d
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -7111,7 +6489,7 @@ int tricept_dissipation(const prepared *m, const real *X, const real *V, real *d
 
 int tricept_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -7123,7 +6501,7 @@ int tricept_momentum(const prepared *m, const real *X, const real *V, real *mome
 int tricept_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7138,7 +6516,7 @@ int tricept_joint_margins(const prepared *m, const real *X, real *margins_out)
 
 int tricept_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7152,7 +6530,7 @@ int tricept_within_limits(const prepared *m, const real *X, real *within_out)
 
 int tricept_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -7163,7 +6541,7 @@ int tricept_actuator_positions(const prepared *m, const real *X, real *q_out)
 
 int tricept_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -7175,7 +6553,7 @@ int tricept_actuator_rates(const prepared *m, const real *X, const real *V, real
 int tricept_actuator_accelerations(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -7187,7 +6565,7 @@ int tricept_actuator_accelerations(const prepared *m, const real *X, const real 
 int tricept_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -7247,7 +6625,7 @@ int tricept_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int tricept_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -7263,7 +6641,7 @@ int tricept_retract(const real *X, const real *step, real *X_moved_out)
 
 int tricept_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -7279,7 +6657,8 @@ int tricept_difference(const real *X0, const real *X1, real *step_out)
 
 int tricept_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

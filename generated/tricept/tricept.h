@@ -153,7 +153,7 @@ typedef struct {
             tube_potential_t_3[1];
     tricept_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
-            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, m_star;
 } tricept_model;
@@ -172,12 +172,12 @@ extern const char *const tricept_ACTUATOR_NAMES[TRICEPT_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tricept_prepare(const tricept_params *params, tricept_model *model);
 
-/* Inertia matrix M. 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 838 mul, 624 add, 11 div, 9 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tricept_M(const tricept_model *model, const tricept_real *X, tricept_real *M);
 size_t tricept_M_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 1100 mul, 780 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 883 mul, 642 add, 12 div, 9 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tricept_Z(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *Z);
@@ -202,7 +202,7 @@ int tricept_constraints(const tricept_model *model, const tricept_real *X, trice
 size_t tricept_constraints_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 397 mul, 240 add, 9 div, 8 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 261 mul, 155 add, 5 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int tricept_constraint_bias(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, tricept_real *bias);
@@ -215,30 +215,30 @@ int tricept_inverse_kinematics(const tricept_model *model, const tricept_real *X
 size_t tricept_inverse_kinematics_batch(const tricept_model *model, size_t n, const tricept_real
     *X, tricept_real *q, int *status);
 
-/* Rates of all joints. 495 mul, 306 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 351 mul, 221 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tricept_joint_rates(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *rates);
 size_t tricept_joint_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of all joints. 731 mul, 467 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 535 mul, 345 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tricept_joint_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);
 size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, const tricept_real
     *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1947 mul, 1421 add, 15 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1498 mul, 1130 add, 12 div, 9 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *M, tricept_real *Z, tricept_real *H);
 size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *M, tricept_real *Z, tricept_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1210 mul, 884 add, 15 div, 14 sqrt, 0
-   trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
-   NULL). Out: tau (NU), lambda (NC). */
+/* Actuator forces tau for the acceleration A, by Eq. 3. 995 mul, 740 add, 12 div, 9 sqrt, 0 trig;
+   the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
+   Out: tau (NU), lambda (NC). */
 int tricept_inverse_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau, tricept_real
     *lambda);
@@ -246,7 +246,7 @@ size_t tricept_inverse_dynamics_batch(const tricept_model *model, size_t n, cons
     const tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau,
     tricept_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1947 mul, 1421 add, 15 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1498 mul, 1130 add, 12 div, 9
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tricept_forward_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -266,8 +266,8 @@ size_t tricept_complete_acceleration_batch(const tricept_model *model, size_t n,
     tricept_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 1078 mul, 764 add, 15 div, 14 sqrt, 0 trig; inverse
-   dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 6). */
+   give the forces of inverse_dynamics. 872 mul, 626 add, 12 div, 9 sqrt, 0 trig; inverse dynamics
+   apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 6). */
 int tricept_leg_reactions(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *forces);
 size_t tricept_leg_reactions_batch(const tricept_model *model, size_t n, const tricept_real *X,
@@ -284,7 +284,7 @@ size_t tricept_energy_batch(const tricept_model *model, size_t n, const tricept_
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (4). */
 int tricept_condition(const tricept_model *model, const tricept_real *X, tricept_real *sigma,
     tricept_real *legs);
@@ -293,8 +293,8 @@ size_t tricept_condition_batch(const tricept_model *model, size_t n, const trice
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ).
-   Out: sigma (6), legs (4). */
+   the legs. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (4). */
 int tricept_condition_constrained(const tricept_model *model, const tricept_real *X, tricept_real
     *sigma, tricept_real *legs);
 size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n, const
@@ -302,15 +302,15 @@ size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n,
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int tricept_manipulability(const tricept_model *model, const tricept_real *X, tricept_real
     *measure, tricept_real *isotropy);
 size_t tricept_manipulability_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *measure, tricept_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 431
-   mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 331
+   mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int tricept_singularity_distance(const tricept_model *model, const tricept_real *X, tricept_real
     *actuators, tricept_real *legs);
@@ -338,7 +338,7 @@ int tricept_dissipation(const tricept_model *model, const tricept_real *X, const
 size_t tricept_dissipation_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 838 mul, 624 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tricept_momentum(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *momentum);
@@ -364,14 +364,14 @@ int tricept_actuator_positions(const tricept_model *model, const tricept_real *X
 size_t tricept_actuator_positions_batch(const tricept_model *model, size_t n, const tricept_real
     *X, tricept_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 495 mul, 306 add, 15 div, 14 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 351 mul, 221 add, 11 div, 9 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int tricept_actuator_rates(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, tricept_real *rates);
 size_t tricept_actuator_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 731 mul, 467 add, 15 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 535 mul, 345 add, 11 div, 9 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tricept_actuator_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);

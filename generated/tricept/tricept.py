@@ -898,6 +898,7 @@ def _prepare(p):
     J_star_t_12 = 0.5*J_star_t_11
     J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
+    J_star_t_15 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
@@ -909,9 +910,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -948,8 +949,8 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
-                h_star_in_platform_y, h_star_in_platform_z, m_star,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -980,9 +981,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3,
-                gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
@@ -2256,14 +2257,14 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1947 mul, 1421 add, 15 div, 14 sqrt, 0 trig
+# dynamics: 1498 mul, 1130 add, 12 div, 9 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2332,13 +2333,12 @@ def _run_dynamics(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2354,11 +2354,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
-        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
-        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-        Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
-    ) = [0.0] * 27
+    M_tt_t, M_tt_t_2, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_t, M_ta_ups_zz,
+        M_ta_t_2, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx,
+        M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x, Z_t_ups_y,
+        Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -2578,38 +2578,37 @@ def _run_dynamics(m, X, V):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
         axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
@@ -2624,25 +2623,22 @@ def _run_dynamics(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_xy*ups_q_z
-        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
-        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
-        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
-        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
-        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
-        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
-        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
-        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
+        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_4 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
+        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
-        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
-        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
+        ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         # (Z_a) rotational part of Z
         ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
@@ -2657,27 +2653,26 @@ def _run_dynamics(m, X, V):
             (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (M_tt) translational block of M
-        M_tt_ups_xx += ups_Q_xx
-        M_tt_ups_xy += ups_Q_xy
+        M_tt_t += ups_Q_t_10
+        M_tt_t_2 += ups_Q_t_12
         M_tt_ups_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_ups_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_ups_xx += ups_M_ta_t_3
-        M_ta_ups_xy += ups_M_ta_t_4
-        M_ta_ups_xz += ups_M_ta_t_5
-        M_ta_ups_yx += ups_M_ta_t_6
-        M_ta_ups_yy += ups_M_ta_t_8
-        M_ta_ups_yz += ups_M_ta_t_9
-        M_ta_ups_zx += ups_M_ta_t_10
-        M_ta_ups_zy += ups_M_ta_t_11
-        M_ta_ups_zz += ups_M_ta_t_12
+        M_ta_t += ups_M_ta_t_5
+        M_ta_ups_zz += ups_M_ta_t_9
+        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xz += ups_M_ta_t_2
+        M_ta_ups_yx += ups_M_ta_t_3
+        M_ta_ups_yz += ups_M_ta_t_6
+        M_ta_ups_zx += ups_M_ta_t_7
+        M_ta_ups_zy += ups_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t
         M_aa_ups_xy += ups_M_aa_t_2
         M_aa_ups_xz += ups_M_aa_t_3
-        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_t += ups_M_aa_t_4
         M_aa_ups_yz += ups_M_aa_t_5
         M_aa_ups_zz += ups_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2795,14 +2790,6 @@ def _run_dynamics(m, X, V):
         tube_S_dot_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -2972,172 +2959,36 @@ def _run_dynamics(m, X, V):
             axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
-        tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
-        tube_w_1_in_axes1_x = tube_e_1_in_axes2_x*tube_w_1_in_axes2_y
-        tube_w_1_t_78 = tube_c_2*tube_w_1_in_axes2_y
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
+        inv_tube_w_1_t_3 = 1.0/tube_w_1_t_3
+        tube_m1_w_1 = inv_tube_w_1_t_3*tube_m1_w_1_t
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_m2_w_1 = -1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
+        tube_m2_w_1 = -inv_tube_w_1_t_3*tube_m2_w_1_t
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
-        # (tube-w_2) force part of reciprocal wrench 2
-        tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17
-        tube_w_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
-        )
-        tube_w_2_t_3 = (
-        inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
-            inv_tube_w_1_t_13*tube_w_1_t_25)
-        )
-        tube_w_2_t_4 = (
-        inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
-            tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
-        )
-        tube_w_2_in_axes2_y = (
-        inv_tube_w_1_t_13*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
-            tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
-        )
-        tube_w_2_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
-        )
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        tube_m3_w_1_t_2 = inv_tube_w_1_t_3*tube_m3_w_1_t
         # (tube-m1_w_2) moment part 1 of reciprocal wrench 2
-        tube_m1_w_2_t = (
-        inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
-            tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4
-        )
-        tube_m1_w_2 = 1.35*tube_m1_w_2_t
+        tube_m1_w_2 = inv_tube_w_1_t_3*tube_w_1_t
         # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
-        tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
-        tube_m2_w_2 = 1.35*tube_m2_w_2_t
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
+        tube_m2_w_2 = inv_tube_w_1_t_3*tube_m2_w_2_t
         # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
-        tube_m3_w_2_t = (
-        inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
-            tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4
-        )
-        tube_m3_w_2 = 1.35*tube_m3_w_2_t
+        tube_m3_w_2 = inv_tube_w_1_t_3*tube_w_1_t_2
         # (tube-o_1) moment part of reciprocal wrench 1
         tube_o_1_in_axes2_x = (
-        -tube_end_p2_in_axes2_y*tube_m2_w_1 - tube_end_p3_in_axes2_z*tube_m3_w_1
+        tube_end_p3_in_axes2_z*tube_m3_w_1_t_2 - tube_end_p2_in_axes2_y*tube_m2_w_1
         )
         tube_o_1_in_axes2_y = (
         tube_m2_w_1*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_1
         )
-        tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z + tube_m3_w_1*tube_n_m3_in_axes2_z
+        tube_o_1_in_axes2_z = (
+        tube_m1_w_1*tube_n_m1_in_axes2_z - tube_m3_w_1_t_2*tube_n_m3_in_axes2_z
+        )
         # (tube-o_2) moment part of reciprocal wrench 2
         tube_o_2_in_axes2_x = (
         -tube_end_p2_in_axes2_y*tube_m2_w_2 - tube_end_p3_in_axes2_z*tube_m3_w_2
@@ -3168,56 +3019,40 @@ def _run_dynamics(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_W_2_t_2 = tube_qd_2*tube_qd_2
-        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xx = -tube_W_2_t - tube_W_2_t_2
+        tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t = tube_q_3*tube_zeta_2_in_axes2_y
+        tube_bias_t_2 = tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
+        tube_bias_in_axes2_y = tube_bias_t_2 + tube_bias_t_4
+        tube_bias_in_axes2_z = -2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
@@ -3239,20 +3074,18 @@ def _run_dynamics(m, X, V):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -3262,19 +3095,18 @@ def _run_dynamics(m, X, V):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -3283,40 +3115,19 @@ def _run_dynamics(m, X, V):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-qdd_1_o) remainder of: acceleration of joint 1
-        tube_qdd_1_o_t = 1.35*tube_nu_1
-        tube_qdd_1_o_t_2 = 1.35*tube_nu_2
-        tube_qdd_1_o_t_3 = 1.35*tube_nu_3
-        tube_qdd_1_o = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77 -
-            tube_m2_w_1_t*tube_qdd_1_o_t_2)
+        tube_qdd_1_o_t = (
+        inv_tube_qd_1_t*(tube_m2_w_1_t*tube_nu_2 + tube_m3_w_1_t*tube_nu_3 -
+            tube_m1_w_1_t*tube_nu_1)
         )
         # (tube-qdd_2_o) remainder of: acceleration of joint 2
-        tube_qdd_2_o_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
-            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69)
+        tube_qdd_2_o = (
+        inv_tube_qd_1_t*(tube_m2_w_2_t*tube_nu_2 + tube_nu_1*tube_w_1_t + tube_nu_3*tube_w_1_t_2)
         )
-        tube_qdd_2_o_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
-            tube_qdd_1_o_t*tube_w_1_t_51 + tube_qdd_1_o_t_3*tube_w_1_t_52 +
-            tube_qdd_2_o_t*tube_w_1_t_53 + tube_rel_o_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_o_t_3 = (
-        tube_qdd_1_o_t*tube_w_1_t_15 + tube_qdd_1_o_t_3*tube_w_1_t_16 +
-            tube_qdd_2_o_t_2*tube_w_1_t_21 + tube_rel_o_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
-            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
-            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
-            tube_qdd_2_o_t*tube_w_1_t_25
-        )
-        tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
         # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
         tube_dalpha_alpha_1_t = tube_c_2*tube_o_1_in_axes2_x
         tube_dalpha_alpha_1_in_axes2_xy = tube_e_1_in_axes2_x*tube_o_1_in_axes2_y
@@ -3324,19 +3135,16 @@ def _run_dynamics(m, X, V):
         tube_dalpha_alpha_1_in_axes2_xx = tube_e_1_in_axes2_x*tube_o_1_in_axes2_x
         tube_dalpha_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_o_1_in_axes2_z
         tube_dalpha_alpha_1_t_3 = tube_c_2*tube_o_1_in_axes2_z
-        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_w_1_in_axes2_z
-        tube_d_alpha_1_t = tube_c_2*tube_w_1_in_axes2_z
         # (tube-alpha_1_o) remainder of: angular acceleration of link 1
-        tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
-        tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
+        tube_alpha_1_o_t = tube_e_1_in_axes2_x*tube_qdd_1_o_t
+        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o_t
         # (tube-alpha_2_o) remainder of: angular acceleration of link 2
-        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
-        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
+        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz - tube_alpha_1_o_t
+        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y + tube_zeta_2_in_axes2_y
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
         tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o
         tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
-        tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
+        tube_B_2_o_in_axes2_zx = -tube_alpha_2_o_in_axes2_y - tube_zeta_2_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
         tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
@@ -3350,36 +3158,41 @@ def _run_dynamics(m, X, V):
         tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_q_3
         tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_q_3
         tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_q_3
-        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_in_axes2_yy = tube_q_3*tube_w_2_in_axes2_y
-        tube_d_acc_3_in_axes2_yz = tube_q_3*tube_w_2_in_axes2_z
-        tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
-        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
         # (tube-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
         tube_acc_3_o_in_axes2_y = (
-        tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_2 + tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_g_in_axes2_y
         )
         tube_acc_3_o_in_axes2_z = (
-        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
+        -tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
+        )
+        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_dalpha_phi_3_t = (
+        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
+        )
+        tube_dalpha_phi_3_t_2 = (
+        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
+        )
+        tube_dalpha_phi_3_t_3 = (
+        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
         )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t = tube_omega_1_t*tube_omega_1_t
+        tube_f_3_t_2 = tube_W_2_in_axes2_xx*tube_h_3_in_spec2_x
         tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
         tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
         tube_f_3_o_in_axes2_x = (
-        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_f_3_t_2 - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_f_3_t_2 + tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_o_in_axes2_y = (
         tube_f_3_t_3 + tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_y*tube_link3_mass -
-            tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
+            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_alpha_1_o_t*tube_h_3_in_spec2_y
         )
         tube_f_3_o_in_axes2_z = (
         tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
@@ -3401,9 +3214,9 @@ def _run_dynamics(m, X, V):
         # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
         tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x -
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_t -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
         )
@@ -3417,11 +3230,11 @@ def _run_dynamics(m, X, V):
         )
         tube_mu_2_o_in_axes2_z = (
         tube_mu_2_t_3 + tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
             tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x - tube_mu_2_t_6 -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_t
         )
         # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_dalpha_N_2_in_axes2_zx = (
@@ -3451,27 +3264,23 @@ def _run_dynamics(m, X, V):
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
         )
-        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_d_N_2_in_axes2_zy = (
-        tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
-            tube_J_group_2_in_axes2_yz*tube_w_1_t_78
-        )
-        tube_d_N_2_in_axes2_zz = (
-        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
-        )
         # (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
         tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
+        tube_N_2_o_t = tube_N_2_o_in_axes2_y*tube_c_2 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x
+        # (tube-dalpha_Gamma_3) coefficient of the acceleration in: force along axis 3 of the distal links' inertia and weight
+        tube_dalpha_Gamma_3_x = (
+        -axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_x*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_x*tube_dalpha_phi_3_t_3
+        )
+        tube_dalpha_Gamma_3_y = (
+        -axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_y*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_y*tube_dalpha_phi_3_t_3
+        )
+        tube_dalpha_Gamma_3_z = (
+        -axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_z*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_z*tube_dalpha_phi_3_t_3
+        )
         # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_dalpha_Gamma_1_t = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
@@ -3523,86 +3332,6 @@ def _run_dynamics(m, X, V):
         )
         # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_d_Gamma_1_t = tube_c_2*tube_h_3_in_spec2_y
-        tube_d_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass + tube_h_3_in_spec2_x*tube_w_1_t_78
-            - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x))
-        )
-        tube_d_Gamma_1_in_axes2_y = (
-        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2
-        )
-        tube_d_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
-        )
-        tube_d_Gamma_1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3
-        )
-        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_dalpha_G_in_axes2_yx = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_yy = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_yz = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_zx = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z
-        )
-        tube_dalpha_G_in_axes2_zy = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z
-        )
-        tube_dalpha_G_in_axes2_zz = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
-        )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_in_axes2_yz = (
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
-        )
-        # (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
-        tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
-        tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
-        tube_G_o_t_4 = (
-        inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
-            tube_G_o_t*tube_w_1_t_25)
-        )
-        tube_G_o_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_o_t*tube_w_1_t_29 + tube_G_o_t_4*tube_w_1_t_69 +
-            tube_N_2_o_in_axes2_y*tube_c_2 - tube_G_o_t_2*tube_w_1_t_45 -
-            tube_G_o_t_3*tube_w_1_t_58 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x)
-        )
-        tube_G_o_in_axes2_y = (
-        tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_w_1_t_76
-        )
-        tube_G_o_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77
-        )
         # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m1_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
@@ -3615,18 +3344,10 @@ def _run_dynamics(m, X, V):
         )
         # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 - tube_d_Gamma_1_t*tube_m1_w_1
-        tube_d_G_m1_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
-        )
-        tube_d_G_m1_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
-        )
         # (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
-        tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_m1_w_1_t
+        inv_tube_w_1_t_3*(tube_N_2_o_t*tube_m1_w_1_t - tube_N_2_o_in_axes2_z*tube_w_1_t)
         )
-        tube_G_m1_o = 1.35*tube_G_m1_o_t
         # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m2_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
@@ -3639,39 +3360,28 @@ def _run_dynamics(m, X, V):
         )
         # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 - tube_d_Gamma_1_t*tube_m2_w_1
-        tube_d_G_m2_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
-        )
-        tube_d_G_m2_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
-        )
         # (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t
-        tube_G_m2_o = 1.35*tube_G_m2_o_t
+        tube_G_m2_o = (
+        inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*tube_m2_w_2_t + tube_N_2_o_t*tube_m2_w_1_t)
+        )
         # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m3_in_axes2_x = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1_t_2
         )
         tube_dalpha_G_m3_in_axes2_y = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1_t_2
         )
         tube_dalpha_G_m3_in_axes2_z = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1_t_2
         )
         # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 - tube_d_Gamma_1_t*tube_m3_w_1
-        tube_d_G_m3_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
-        )
-        tube_d_G_m3_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
+        tube_d_G_m3_in_axes2_x = (
+        tube_d_Gamma_1_t*tube_m3_w_1_t_2 + tube_h_3_in_spec2_z*tube_m3_w_2
         )
         # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m3_o_t = (
-        tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_m3_w_1_t
+        tube_G_m3_o = (
+        inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*tube_w_1_t_2 + tube_N_2_o_t*tube_m3_w_1_t)
         )
-        tube_G_m3_o = 1.35*tube_G_m3_o_t
         # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m_in_axes2_xx = (
         -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
@@ -3714,106 +3424,32 @@ def _run_dynamics(m, X, V):
         -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
         )
-        tube_d_G_m_in_axes2_xy = (
-        -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_xz = (
-        -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
-        )
         tube_d_G_m_in_axes2_yx = (
         tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
             tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
         )
-        tube_d_G_m_in_axes2_yy = (
-        tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_yz = (
-        tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
-        )
         tube_d_G_m_in_axes2_zx = (
         tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_zy = (
-        tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_zz = (
-        tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
         # (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
         tube_G_m_o_in_axes2_y = (
-        tube_G_m2_o*tube_n_m2_in_axes2_y - tube_G_m1_o*tube_end_p1_in_axes2_z
+        tube_G_m1_o_t*tube_end_p1_in_axes2_z + tube_G_m2_o*tube_n_m2_in_axes2_y
         )
         tube_G_m_o_in_axes2_z = (
-        tube_G_m1_o*tube_n_m1_in_axes2_z + tube_G_m3_o*tube_n_m3_in_axes2_z
-        )
-        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_dalpha_c_in_axes2_xx = (
-        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
-        )
-        tube_dalpha_c_in_axes2_xy = (
-        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
-        )
-        tube_dalpha_c_in_axes2_xz = (
-        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
-        )
-        # (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_d_c_in_axes2_xy = (
-        tube_h_3_in_spec2_y*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_2_in_axes2_y
-        )
-        tube_d_c_in_axes2_xz = (
-        tube_d_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_w_2_in_axes2_z
+        tube_G_m3_o*tube_n_m3_in_axes2_z - tube_G_m1_o_t*tube_n_m1_in_axes2_z
         )
         # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
-        tube_Q_t = (
-        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y
-            - tube_link3_mass
-        )
-        tube_Q_t_2 = 0.5*tube_Q_t
-        tube_Q_t_3 = (
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z
-            - tube_link3_mass
-        )
-        tube_Q_t_4 = 0.5*tube_Q_t_3
-        tube_Q_t_5 = (
-        axis_y_tube_axes2_x*tube_Q_t_2 + axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_6 = (
-        axis_y_tube_axes2_y*tube_Q_t_2 + axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_7 = (
-        axis_y_tube_axes2_z*tube_Q_t_2 + axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
-        tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
-        tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
-        tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8
-        tube_Q_xx = 2.0*tube_Q_t_11 + tube_link3_mass
-        tube_Q_xy = (
-        axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8
-        )
-        tube_Q_xz = (
-        axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8
-        )
-        tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9
-        tube_Q_yy = 2.0*tube_Q_t_12 + tube_link3_mass
-        tube_Q_yz = (
-        axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
-            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9
-        )
-        tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10
-        tube_Q_zz = 2.0*tube_Q_t_13 + tube_link3_mass
+        tube_Q_t = axis_x_tube_axes2_x*tube_link3_mass
+        tube_Q_t_2 = axis_x_tube_axes2_y*tube_link3_mass
+        tube_Q_xx = axis_x_tube_axes2_x*tube_Q_t
+        tube_Q_xy = axis_x_tube_axes2_y*tube_Q_t
+        tube_Q_xz = axis_x_tube_axes2_z*tube_Q_t
+        tube_Q_yy = axis_x_tube_axes2_y*tube_Q_t_2
+        tube_Q_yz = axis_x_tube_axes2_z*tube_Q_t_2
+        tube_Q_zz = axis_x_tube_axes2_z*axis_x_tube_axes2_z*tube_link3_mass
         # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
         tube_dalpha_c_m_zz = (
         axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
@@ -3835,136 +3471,39 @@ def _run_dynamics(m, X, V):
         -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
             axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx
         )
-        tube_d_c_m_t_3 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy
-        )
-        tube_d_c_m_t_4 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy
-        )
-        tube_d_c_m_t_5 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz
-        )
-        tube_d_c_m_t_6 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz
-        )
-        tube_d_c_m_xx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t + axis_y_tube_axes2_x*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_x*tube_d_c_m_t_5
-        )
-        tube_d_c_m_xy = (
-        axis_x_tube_axes2_y*tube_d_c_m_t + axis_y_tube_axes2_y*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_y*tube_d_c_m_t_5
-        )
-        tube_d_c_m_xz = (
-        axis_x_tube_axes2_z*tube_d_c_m_t + axis_y_tube_axes2_z*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_z*tube_d_c_m_t_5
-        )
-        tube_d_c_m_yx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t_2 + axis_y_tube_axes2_x*tube_d_c_m_t_4 +
-            axis_z_tube_axes2_x*tube_d_c_m_t_6
-        )
+        tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t
+        tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t
+        tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t
+        tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2
         # (tube-U) velocity and gravity terms of the leg force
-        tube_U_x = (
-        axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_x*tube_G_o_in_axes2_z
-        )
-        tube_U_y = (
-        axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_y*tube_G_o_in_axes2_z
-        )
-        tube_U_z = (
-        axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_z*tube_G_o_in_axes2_z
-        )
+        tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x
+        tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x
+        tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x
         # (M_ta) coupling block of M
-        tube_M_ta_t = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_3 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_4 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy
-        )
+        tube_M_ta_t = tube_Q_xy*tube_q_z
+        tube_M_ta_t_2 = tube_Q_xz*tube_q_y
+        tube_M_ta_t_3 = tube_Q_yz*tube_q_x
+        tube_M_ta_t_4 = tube_M_ta_t_2 + axis_x_tube_axes2_x*tube_dalpha_Gamma_3_x - tube_M_ta_t
         tube_M_ta_t_5 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy
+        axis_x_tube_axes2_x*tube_dalpha_Gamma_3_y + tube_Q_xx*tube_q_z - tube_Q_xz*tube_q_x
         )
         tube_M_ta_t_6 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy
+        axis_x_tube_axes2_x*tube_dalpha_Gamma_3_z + tube_Q_xy*tube_q_x - tube_Q_xx*tube_q_y
         )
         tube_M_ta_t_7 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz
+        axis_x_tube_axes2_y*tube_dalpha_Gamma_3_x + tube_Q_yz*tube_q_y - tube_Q_yy*tube_q_z
         )
-        tube_M_ta_t_8 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz
-        )
+        tube_M_ta_t_8 = tube_M_ta_t + axis_x_tube_axes2_y*tube_dalpha_Gamma_3_y - tube_M_ta_t_3
         tube_M_ta_t_9 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz
+        axis_x_tube_axes2_y*tube_dalpha_Gamma_3_z + tube_Q_yy*tube_q_x - tube_Q_xy*tube_q_y
         )
-        tube_M_ta_t_10 = tube_Q_xy*tube_q_z
-        tube_M_ta_t_11 = tube_Q_xz*tube_q_y
-        tube_M_ta_t_12 = tube_Q_yz*tube_q_x
-        tube_M_ta_t_13 = (
-        tube_M_ta_t_11 - tube_M_ta_t_10 - axis_x_tube_axes2_x*tube_M_ta_t -
-            axis_y_tube_axes2_x*tube_M_ta_t_4 - axis_z_tube_axes2_x*tube_M_ta_t_7
+        tube_M_ta_t_10 = (
+        axis_x_tube_axes2_z*tube_dalpha_Gamma_3_x + tube_Q_zz*tube_q_y - tube_Q_yz*tube_q_z
         )
-        tube_M_ta_t_14 = (
-        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - axis_y_tube_axes2_y*tube_M_ta_t_4 -
-            axis_z_tube_axes2_y*tube_M_ta_t_7 - tube_Q_xz*tube_q_x
+        tube_M_ta_t_11 = (
+        axis_x_tube_axes2_z*tube_dalpha_Gamma_3_y + tube_Q_xz*tube_q_z - tube_Q_zz*tube_q_x
         )
-        tube_M_ta_t_15 = (
-        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - axis_y_tube_axes2_z*tube_M_ta_t_4 -
-            axis_z_tube_axes2_z*tube_M_ta_t_7 - tube_Q_xx*tube_q_y
-        )
-        tube_M_ta_t_16 = (
-        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - axis_y_tube_axes2_x*tube_M_ta_t_5
-            - axis_z_tube_axes2_x*tube_M_ta_t_8 - tube_Q_yy*tube_q_z
-        )
-        tube_M_ta_t_17 = (
-        tube_M_ta_t_10 - tube_M_ta_t_12 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
-            axis_y_tube_axes2_y*tube_M_ta_t_5 - axis_z_tube_axes2_y*tube_M_ta_t_8
-        )
-        tube_M_ta_t_18 = (
-        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - axis_y_tube_axes2_z*tube_M_ta_t_5
-            - axis_z_tube_axes2_z*tube_M_ta_t_8 - tube_Q_xy*tube_q_y
-        )
-        tube_M_ta_t_19 = (
-        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - axis_y_tube_axes2_x*tube_M_ta_t_6
-            - axis_z_tube_axes2_x*tube_M_ta_t_9 - tube_Q_yz*tube_q_z
-        )
-        tube_M_ta_t_20 = (
-        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - axis_y_tube_axes2_y*tube_M_ta_t_6
-            - axis_z_tube_axes2_y*tube_M_ta_t_9 - tube_Q_zz*tube_q_x
-        )
-        tube_M_ta_t_21 = (
-        tube_M_ta_t_12 - tube_M_ta_t_11 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
-            axis_y_tube_axes2_z*tube_M_ta_t_6 - axis_z_tube_axes2_z*tube_M_ta_t_9
-        )
+        tube_M_ta_t_12 = tube_M_ta_t_3 + axis_x_tube_axes2_z*tube_dalpha_Gamma_3_z - tube_M_ta_t_2
         # (M_aa) rotational block of M
         tube_M_aa_t = (
         -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
@@ -4001,46 +3540,33 @@ def _run_dynamics(m, X, V):
             axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx
         )
         tube_M_aa_t_8 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy
+        tube_M_ta_t_10*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
+            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
+            tube_M_ta_t_7*tube_q_z - tube_d_c_m_xz*tube_q_y
         )
         tube_M_aa_t_9 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz
+        tube_M_ta_t_11*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
+            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
+            tube_M_ta_t_8*tube_q_z - tube_d_c_m_xx*tube_q_z
         )
         tube_M_aa_t_10 = (
-        tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
-            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
-            tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y
+        tube_M_ta_t_12*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
+            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
+            tube_M_ta_t_9*tube_q_z - tube_d_c_m_xy*tube_q_x
         )
         tube_M_aa_t_11 = (
-        tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
-            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
-            tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z
+        tube_M_ta_t_5*tube_q_z + axis_x_tube_axes2_z*tube_d_c_m_t_2*tube_q_x -
+            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
+            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_11*tube_q_x - tube_d_c_m_yx*tube_q_z
         )
         tube_M_aa_t_12 = (
-        tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
-            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
-            tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x
+        tube_M_ta_t_6*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
+            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
+            tube_M_ta_t_12*tube_q_x - axis_x_tube_axes2_y*tube_d_c_m_t_2*tube_q_x
         )
         tube_M_aa_t_13 = (
-        tube_M_ta_t_14*tube_q_z + tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-            axis_y_tube_axes2_z*tube_d_c_m_t_4 + axis_z_tube_axes2_z*tube_d_c_m_t_6) -
-            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
-            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
-        )
-        tube_M_aa_t_14 = (
-        tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
-            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
-            tube_M_ta_t_21*tube_q_x - tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-            axis_y_tube_axes2_y*tube_d_c_m_t_4 + axis_z_tube_axes2_y*tube_d_c_m_t_6)
-        )
-        tube_M_aa_t_15 = (
-        tube_M_ta_t_18*tube_q_x + tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
-            axis_y_tube_axes2_x*tube_M_aa_t_8 + axis_z_tube_axes2_x*tube_M_aa_t_9) -
-            tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
-            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
-            axis_z_tube_axes2_y*tube_M_aa_t_9)
+        tube_M_ta_t_9*tube_q_x + axis_x_tube_axes2_x*tube_M_aa_t_7*tube_q_y - tube_dalpha_c_m_zz -
+            tube_M_ta_t_6*tube_q_y - axis_x_tube_axes2_y*tube_M_aa_t_7*tube_q_x
         )
         # (Z_a) rotational part of Z
         tube_Z_a_t = (
@@ -4074,10 +3600,8 @@ def _run_dynamics(m, X, V):
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0) & (abs(tube_qd_1_t) > _TOLERANCE * 1.0)
         )
         # (M_tt) translational block of M
         M_tt_tube_xx += tube_Q_xx
@@ -4087,22 +3611,22 @@ def _run_dynamics(m, X, V):
         M_tt_tube_yz += tube_Q_yz
         M_tt_tube_zz += tube_Q_zz
         # (M_ta) coupling block of M
-        M_ta_tube_xx += tube_M_ta_t_13
-        M_ta_tube_xy += tube_M_ta_t_14
-        M_ta_tube_xz += tube_M_ta_t_15
-        M_ta_tube_yx += tube_M_ta_t_16
-        M_ta_tube_yy += tube_M_ta_t_17
-        M_ta_tube_yz += tube_M_ta_t_18
-        M_ta_tube_zx += tube_M_ta_t_19
-        M_ta_tube_zy += tube_M_ta_t_20
-        M_ta_tube_zz += tube_M_ta_t_21
+        M_ta_tube_xx += tube_M_ta_t_4
+        M_ta_tube_xy += tube_M_ta_t_5
+        M_ta_tube_xz += tube_M_ta_t_6
+        M_ta_tube_yx += tube_M_ta_t_7
+        M_ta_tube_yy += tube_M_ta_t_8
+        M_ta_tube_yz += tube_M_ta_t_9
+        M_ta_tube_zx += tube_M_ta_t_10
+        M_ta_tube_zy += tube_M_ta_t_11
+        M_ta_tube_zz += tube_M_ta_t_12
         # (M_aa) rotational block of M
-        M_aa_tube_xx += tube_M_aa_t_10
-        M_aa_tube_xy += tube_M_aa_t_11
-        M_aa_tube_xz += tube_M_aa_t_12
-        M_aa_tube_yy += tube_M_aa_t_13
-        M_aa_tube_yz += tube_M_aa_t_14
-        M_aa_tube_zz += tube_M_aa_t_15
+        M_aa_tube_xx += tube_M_aa_t_8
+        M_aa_tube_xy += tube_M_aa_t_9
+        M_aa_tube_xz += tube_M_aa_t_10
+        M_aa_tube_yy += tube_M_aa_t_11
+        M_aa_tube_yz += tube_M_aa_t_12
+        M_aa_tube_zz += tube_M_aa_t_13
         # (Z_t) translational part of Z
         Z_t_tube_x += tube_U_x
         Z_t_tube_y += tube_U_y
@@ -4138,18 +3662,18 @@ def _run_dynamics(m, X, V):
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
-    M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
+    M_tt_xx = M_tt_tube_xx + m_star - M_tt_t
+    M_tt_xy = M_tt_tube_xy - M_tt_t_2
     M_tt_xz = M_tt_tube_xz + M_tt_ups_xz
     M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star
     M_tt_yz = M_tt_tube_yz + M_tt_ups_yz
     M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_tube_xx + M_ta_ups_xx
-    M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z
+    M_ta_xx = M_ta_t + M_ta_tube_xx - M_ta_ups_zz
+    M_ta_xy = M_ta_tube_xy + h_star_z - M_ta_t_2
     M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z
-    M_ta_yy = M_ta_tube_yy + M_ta_ups_yy
+    M_ta_yy = M_ta_tube_yy - M_ta_t
     M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x
     M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y
     M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x
@@ -4158,7 +3682,7 @@ def _run_dynamics(m, X, V):
     M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx
     M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy
     M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz
-    M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy
+    M_aa_yy = J_star_yy + M_aa_tube_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz
     M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz
     # (Z_t) translational part of Z
@@ -4219,13 +3743,13 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 1196 mul, 845 add, 15 div, 14 sqrt, 0 trig
+# M: 838 mul, 624 add, 11 div, 9 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        J_star_t_12, J_star_t_14, J_star_t_15, h_star_in_platform_x, h_star_in_platform_y,
         h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
@@ -4278,18 +3802,17 @@ def _run_M(m, X):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     (
-    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
-        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
-        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
-    ) = [0.0] * 21
+    M_tt_t, M_tt_t_2, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_t, M_ta_ups_zz,
+        M_ta_t_2, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx,
+        M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
@@ -4383,85 +3906,80 @@ def _run_M(m, X):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_4 = (
-        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
+            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
-        ups_Q_xx = -2.0*ups_Q_t_9
-        ups_Q_xy = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
-            - axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
+        ups_Q_t_10 = 2.0*ups_Q_t_9
+        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
+        ups_Q_yy = -2.0*ups_Q_t_11
+        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_t_12 = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
+            + axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
-        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_xy*ups_q_z
-        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
-        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
-        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
-        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
-        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
-        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
-        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
-        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
+        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_4 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
+        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
-        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
-        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
+        ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
             (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (M_tt) translational block of M
-        M_tt_ups_xx += ups_Q_xx
-        M_tt_ups_xy += ups_Q_xy
+        M_tt_t += ups_Q_t_10
+        M_tt_t_2 += ups_Q_t_12
         M_tt_ups_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_ups_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_ups_xx += ups_M_ta_t_3
-        M_ta_ups_xy += ups_M_ta_t_4
-        M_ta_ups_xz += ups_M_ta_t_5
-        M_ta_ups_yx += ups_M_ta_t_6
-        M_ta_ups_yy += ups_M_ta_t_8
-        M_ta_ups_yz += ups_M_ta_t_9
-        M_ta_ups_zx += ups_M_ta_t_10
-        M_ta_ups_zy += ups_M_ta_t_11
-        M_ta_ups_zz += ups_M_ta_t_12
+        M_ta_t += ups_M_ta_t_5
+        M_ta_ups_zz += ups_M_ta_t_9
+        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xz += ups_M_ta_t_2
+        M_ta_ups_yx += ups_M_ta_t_3
+        M_ta_ups_yz += ups_M_ta_t_6
+        M_ta_ups_zx += ups_M_ta_t_7
+        M_ta_ups_zy += ups_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t
         M_aa_ups_xy += ups_M_aa_t_2
         M_aa_ups_xz += ups_M_aa_t_3
-        M_aa_ups_yy += ups_M_aa_t_4
+        M_aa_t += ups_M_aa_t_4
         M_aa_ups_yz += ups_M_aa_t_5
         M_aa_ups_zz += ups_M_aa_t_6
     (
@@ -4641,13 +4159,6 @@ def _run_M(m, X):
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        # (tube-m1_c2) moment part 1 of constraint wrench 2
-        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of constraint wrench 2
-        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
@@ -4660,172 +4171,36 @@ def _run_M(m, X):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
-        tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
-        tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
-        tube_w_1_in_axes1_x = tube_e_1_in_axes2_x*tube_w_1_in_axes2_y
-        tube_w_1_t_78 = tube_c_2*tube_w_1_in_axes2_y
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
-        tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
+        inv_tube_w_1_t_3 = 1.0/tube_w_1_t_3
+        tube_m1_w_1 = inv_tube_w_1_t_3*tube_m1_w_1_t
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_m2_w_1 = -1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
+        tube_m2_w_1 = -inv_tube_w_1_t_3*tube_m2_w_1_t
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
-        tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
-        # (tube-w_2) force part of reciprocal wrench 2
-        tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17
-        tube_w_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
-        )
-        tube_w_2_t_3 = (
-        inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
-            inv_tube_w_1_t_13*tube_w_1_t_25)
-        )
-        tube_w_2_t_4 = (
-        inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
-            tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
-        )
-        tube_w_2_in_axes2_y = (
-        inv_tube_w_1_t_13*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
-            tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
-        )
-        tube_w_2_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
-        )
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        tube_m3_w_1_t_2 = inv_tube_w_1_t_3*tube_m3_w_1_t
         # (tube-m1_w_2) moment part 1 of reciprocal wrench 2
-        tube_m1_w_2_t = (
-        inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
-            tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4
-        )
-        tube_m1_w_2 = 1.35*tube_m1_w_2_t
+        tube_m1_w_2 = inv_tube_w_1_t_3*tube_w_1_t
         # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
-        tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
-        tube_m2_w_2 = 1.35*tube_m2_w_2_t
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
+        tube_m2_w_2 = inv_tube_w_1_t_3*tube_m2_w_2_t
         # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
-        tube_m3_w_2_t = (
-        inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
-            tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4
-        )
-        tube_m3_w_2 = 1.35*tube_m3_w_2_t
+        tube_m3_w_2 = inv_tube_w_1_t_3*tube_w_1_t_2
         # (tube-o_1) moment part of reciprocal wrench 1
         tube_o_1_in_axes2_x = (
-        -tube_end_p2_in_axes2_y*tube_m2_w_1 - tube_end_p3_in_axes2_z*tube_m3_w_1
+        tube_end_p3_in_axes2_z*tube_m3_w_1_t_2 - tube_end_p2_in_axes2_y*tube_m2_w_1
         )
         tube_o_1_in_axes2_y = (
         tube_m2_w_1*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_1
         )
-        tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z + tube_m3_w_1*tube_n_m3_in_axes2_z
+        tube_o_1_in_axes2_z = (
+        tube_m1_w_1*tube_n_m1_in_axes2_z - tube_m3_w_1_t_2*tube_n_m3_in_axes2_z
+        )
         # (tube-o_2) moment part of reciprocal wrench 2
         tube_o_2_in_axes2_x = (
         -tube_end_p2_in_axes2_y*tube_m2_w_2 - tube_end_p3_in_axes2_z*tube_m3_w_2
@@ -4841,9 +4216,6 @@ def _run_M(m, X):
         tube_dalpha_alpha_1_in_axes2_xx = tube_e_1_in_axes2_x*tube_o_1_in_axes2_x
         tube_dalpha_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_o_1_in_axes2_z
         tube_dalpha_alpha_1_t_3 = tube_c_2*tube_o_1_in_axes2_z
-        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_w_1_in_axes2_z
-        tube_d_alpha_1_t = tube_c_2*tube_w_1_in_axes2_z
         # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
         tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_q_3
         tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_q_3
@@ -4851,11 +4223,16 @@ def _run_M(m, X):
         tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_q_3
         tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_q_3
         tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_q_3
-        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_in_axes2_yy = tube_q_3*tube_w_2_in_axes2_y
-        tube_d_acc_3_in_axes2_yz = tube_q_3*tube_w_2_in_axes2_z
-        tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
-        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
+        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        tube_dalpha_phi_3_t = (
+        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
+        )
+        tube_dalpha_phi_3_t_2 = (
+        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
+        )
+        tube_dalpha_phi_3_t_3 = (
+        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
+        )
         # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_dalpha_N_2_in_axes2_zx = (
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
@@ -4884,23 +4261,18 @@ def _run_M(m, X):
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
         )
-        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_d_N_2_in_axes2_zy = (
-        tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
-            tube_J_group_2_in_axes2_yz*tube_w_1_t_78
+        # (tube-dalpha_Gamma_3) coefficient of the acceleration in: force along axis 3 of the distal links' inertia and weight
+        tube_dalpha_Gamma_3_x = (
+        -axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_x*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_x*tube_dalpha_phi_3_t_3
         )
-        tube_d_N_2_in_axes2_zz = (
-        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
-            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
+        tube_dalpha_Gamma_3_y = (
+        -axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_y*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_y*tube_dalpha_phi_3_t_3
+        )
+        tube_dalpha_Gamma_3_z = (
+        -axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_z*tube_dalpha_phi_3_t_2 -
+            axis_z_tube_axes2_z*tube_dalpha_phi_3_t_3
         )
         # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_dalpha_Gamma_1_t = (
@@ -4953,66 +4325,6 @@ def _run_M(m, X):
         )
         # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_d_Gamma_1_t = tube_c_2*tube_h_3_in_spec2_y
-        tube_d_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass + tube_h_3_in_spec2_x*tube_w_1_t_78
-            - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x))
-        )
-        tube_d_Gamma_1_in_axes2_y = (
-        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
-            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
-            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2
-        )
-        tube_d_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
-            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
-            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
-        )
-        tube_d_Gamma_1_in_axes2_z = (
-        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
-            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
-            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
-            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3
-        )
-        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_dalpha_G_in_axes2_yx = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_yy = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_yz = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
-            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y
-        )
-        tube_dalpha_G_in_axes2_zx = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z
-        )
-        tube_dalpha_G_in_axes2_zy = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z
-        )
-        tube_dalpha_G_in_axes2_zz = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
-            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
-        )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_in_axes2_yz = (
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
-        )
         # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m1_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
@@ -5025,12 +4337,6 @@ def _run_M(m, X):
         )
         # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 - tube_d_Gamma_1_t*tube_m1_w_1
-        tube_d_G_m1_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
-        )
-        tube_d_G_m1_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
-        )
         # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m2_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
@@ -5043,29 +4349,19 @@ def _run_M(m, X):
         )
         # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 - tube_d_Gamma_1_t*tube_m2_w_1
-        tube_d_G_m2_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
-        )
-        tube_d_G_m2_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
-        )
         # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m3_in_axes2_x = (
-        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1_t_2
         )
         tube_dalpha_G_m3_in_axes2_y = (
-        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1_t_2
         )
         tube_dalpha_G_m3_in_axes2_z = (
-        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
+        tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2 - tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1_t_2
         )
         # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 - tube_d_Gamma_1_t*tube_m3_w_1
-        tube_d_G_m3_in_axes2_y = (
-        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
-        )
-        tube_d_G_m3_in_axes2_z = (
-        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
+        tube_d_G_m3_in_axes2_x = (
+        tube_d_Gamma_1_t*tube_m3_w_1_t_2 + tube_h_3_in_spec2_z*tube_m3_w_2
         )
         # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m_in_axes2_xx = (
@@ -5109,96 +4405,22 @@ def _run_M(m, X):
         -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
             tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
         )
-        tube_d_G_m_in_axes2_xy = (
-        -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_xz = (
-        -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
-        )
         tube_d_G_m_in_axes2_yx = (
         tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
             tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
         )
-        tube_d_G_m_in_axes2_yy = (
-        tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_yz = (
-        tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
-        )
         tube_d_G_m_in_axes2_zx = (
         tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
         )
-        tube_d_G_m_in_axes2_zy = (
-        tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
-        )
-        tube_d_G_m_in_axes2_zz = (
-        tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
-        )
-        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_dalpha_c_in_axes2_xx = (
-        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
-        )
-        tube_dalpha_c_in_axes2_xy = (
-        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
-        )
-        tube_dalpha_c_in_axes2_xz = (
-        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
-        )
-        # (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_d_c_in_axes2_xy = (
-        tube_h_3_in_spec2_y*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_2_in_axes2_y
-        )
-        tube_d_c_in_axes2_xz = (
-        tube_d_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_w_2_in_axes2_z
-        )
         # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
-        tube_Q_t = (
-        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y
-            - tube_link3_mass
-        )
-        tube_Q_t_2 = 0.5*tube_Q_t
-        tube_Q_t_3 = (
-        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z
-            - tube_link3_mass
-        )
-        tube_Q_t_4 = 0.5*tube_Q_t_3
-        tube_Q_t_5 = (
-        axis_y_tube_axes2_x*tube_Q_t_2 + axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_6 = (
-        axis_y_tube_axes2_y*tube_Q_t_2 + axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_7 = (
-        axis_y_tube_axes2_z*tube_Q_t_2 + axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
-            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy
-        )
-        tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
-        tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
-        tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
-        tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8
-        tube_Q_xx = 2.0*tube_Q_t_11 + tube_link3_mass
-        tube_Q_xy = (
-        axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8
-        )
-        tube_Q_xz = (
-        axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8
-        )
-        tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9
-        tube_Q_yy = 2.0*tube_Q_t_12 + tube_link3_mass
-        tube_Q_yz = (
-        axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
-            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9
-        )
-        tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10
-        tube_Q_zz = 2.0*tube_Q_t_13 + tube_link3_mass
+        tube_Q_t = axis_x_tube_axes2_x*tube_link3_mass
+        tube_Q_t_2 = axis_x_tube_axes2_y*tube_link3_mass
+        tube_Q_xx = axis_x_tube_axes2_x*tube_Q_t
+        tube_Q_xy = axis_x_tube_axes2_y*tube_Q_t
+        tube_Q_xz = axis_x_tube_axes2_z*tube_Q_t
+        tube_Q_yy = axis_x_tube_axes2_y*tube_Q_t_2
+        tube_Q_yz = axis_x_tube_axes2_z*tube_Q_t_2
+        tube_Q_zz = axis_x_tube_axes2_z*axis_x_tube_axes2_z*tube_link3_mass
         # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
         tube_dalpha_c_m_zz = (
         axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
@@ -5220,123 +4442,35 @@ def _run_M(m, X):
         -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
             axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx
         )
-        tube_d_c_m_t_3 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy
-        )
-        tube_d_c_m_t_4 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy
-        )
-        tube_d_c_m_t_5 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz
-        )
-        tube_d_c_m_t_6 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz
-        )
-        tube_d_c_m_xx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t + axis_y_tube_axes2_x*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_x*tube_d_c_m_t_5
-        )
-        tube_d_c_m_xy = (
-        axis_x_tube_axes2_y*tube_d_c_m_t + axis_y_tube_axes2_y*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_y*tube_d_c_m_t_5
-        )
-        tube_d_c_m_xz = (
-        axis_x_tube_axes2_z*tube_d_c_m_t + axis_y_tube_axes2_z*tube_d_c_m_t_3 +
-            axis_z_tube_axes2_z*tube_d_c_m_t_5
-        )
-        tube_d_c_m_yx = (
-        axis_x_tube_axes2_x*tube_d_c_m_t_2 + axis_y_tube_axes2_x*tube_d_c_m_t_4 +
-            axis_z_tube_axes2_x*tube_d_c_m_t_6
-        )
+        tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t
+        tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t
+        tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t
+        tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2
         # (M_ta) coupling block of M
-        tube_M_ta_t = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_3 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx
-        )
-        tube_M_ta_t_4 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy
-        )
+        tube_M_ta_t = tube_Q_xy*tube_q_z
+        tube_M_ta_t_2 = tube_Q_xz*tube_q_y
+        tube_M_ta_t_3 = tube_Q_yz*tube_q_x
+        tube_M_ta_t_4 = tube_M_ta_t_2 + axis_x_tube_axes2_x*tube_dalpha_Gamma_3_x - tube_M_ta_t
         tube_M_ta_t_5 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy
+        axis_x_tube_axes2_x*tube_dalpha_Gamma_3_y + tube_Q_xx*tube_q_z - tube_Q_xz*tube_q_x
         )
         tube_M_ta_t_6 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy
+        axis_x_tube_axes2_x*tube_dalpha_Gamma_3_z + tube_Q_xy*tube_q_x - tube_Q_xx*tube_q_y
         )
         tube_M_ta_t_7 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz
+        axis_x_tube_axes2_y*tube_dalpha_Gamma_3_x + tube_Q_yz*tube_q_y - tube_Q_yy*tube_q_z
         )
-        tube_M_ta_t_8 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz
-        )
+        tube_M_ta_t_8 = tube_M_ta_t + axis_x_tube_axes2_y*tube_dalpha_Gamma_3_y - tube_M_ta_t_3
         tube_M_ta_t_9 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz
+        axis_x_tube_axes2_y*tube_dalpha_Gamma_3_z + tube_Q_yy*tube_q_x - tube_Q_xy*tube_q_y
         )
-        tube_M_ta_t_10 = tube_Q_xy*tube_q_z
-        tube_M_ta_t_11 = tube_Q_xz*tube_q_y
-        tube_M_ta_t_12 = tube_Q_yz*tube_q_x
-        tube_M_ta_t_13 = (
-        tube_M_ta_t_11 - tube_M_ta_t_10 - axis_x_tube_axes2_x*tube_M_ta_t -
-            axis_y_tube_axes2_x*tube_M_ta_t_4 - axis_z_tube_axes2_x*tube_M_ta_t_7
+        tube_M_ta_t_10 = (
+        axis_x_tube_axes2_z*tube_dalpha_Gamma_3_x + tube_Q_zz*tube_q_y - tube_Q_yz*tube_q_z
         )
-        tube_M_ta_t_14 = (
-        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - axis_y_tube_axes2_y*tube_M_ta_t_4 -
-            axis_z_tube_axes2_y*tube_M_ta_t_7 - tube_Q_xz*tube_q_x
+        tube_M_ta_t_11 = (
+        axis_x_tube_axes2_z*tube_dalpha_Gamma_3_y + tube_Q_xz*tube_q_z - tube_Q_zz*tube_q_x
         )
-        tube_M_ta_t_15 = (
-        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - axis_y_tube_axes2_z*tube_M_ta_t_4 -
-            axis_z_tube_axes2_z*tube_M_ta_t_7 - tube_Q_xx*tube_q_y
-        )
-        tube_M_ta_t_16 = (
-        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - axis_y_tube_axes2_x*tube_M_ta_t_5
-            - axis_z_tube_axes2_x*tube_M_ta_t_8 - tube_Q_yy*tube_q_z
-        )
-        tube_M_ta_t_17 = (
-        tube_M_ta_t_10 - tube_M_ta_t_12 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
-            axis_y_tube_axes2_y*tube_M_ta_t_5 - axis_z_tube_axes2_y*tube_M_ta_t_8
-        )
-        tube_M_ta_t_18 = (
-        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - axis_y_tube_axes2_z*tube_M_ta_t_5
-            - axis_z_tube_axes2_z*tube_M_ta_t_8 - tube_Q_xy*tube_q_y
-        )
-        tube_M_ta_t_19 = (
-        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - axis_y_tube_axes2_x*tube_M_ta_t_6
-            - axis_z_tube_axes2_x*tube_M_ta_t_9 - tube_Q_yz*tube_q_z
-        )
-        tube_M_ta_t_20 = (
-        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - axis_y_tube_axes2_y*tube_M_ta_t_6
-            - axis_z_tube_axes2_y*tube_M_ta_t_9 - tube_Q_zz*tube_q_x
-        )
-        tube_M_ta_t_21 = (
-        tube_M_ta_t_12 - tube_M_ta_t_11 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
-            axis_y_tube_axes2_z*tube_M_ta_t_6 - axis_z_tube_axes2_z*tube_M_ta_t_9
-        )
+        tube_M_ta_t_12 = tube_M_ta_t_3 + axis_x_tube_axes2_z*tube_dalpha_Gamma_3_z - tube_M_ta_t_2
         # (M_aa) rotational block of M
         tube_M_aa_t = (
         -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
@@ -5373,54 +4507,39 @@ def _run_M(m, X):
             axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx
         )
         tube_M_aa_t_8 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy
+        tube_M_ta_t_10*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
+            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
+            tube_M_ta_t_7*tube_q_z - tube_d_c_m_xz*tube_q_y
         )
         tube_M_aa_t_9 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz
+        tube_M_ta_t_11*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
+            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
+            tube_M_ta_t_8*tube_q_z - tube_d_c_m_xx*tube_q_z
         )
         tube_M_aa_t_10 = (
-        tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
-            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
-            tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y
+        tube_M_ta_t_12*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
+            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
+            tube_M_ta_t_9*tube_q_z - tube_d_c_m_xy*tube_q_x
         )
         tube_M_aa_t_11 = (
-        tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
-            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
-            tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z
+        tube_M_ta_t_5*tube_q_z + axis_x_tube_axes2_z*tube_d_c_m_t_2*tube_q_x -
+            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
+            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_11*tube_q_x - tube_d_c_m_yx*tube_q_z
         )
         tube_M_aa_t_12 = (
-        tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
-            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
-            tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x
+        tube_M_ta_t_6*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
+            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
+            tube_M_ta_t_12*tube_q_x - axis_x_tube_axes2_y*tube_d_c_m_t_2*tube_q_x
         )
         tube_M_aa_t_13 = (
-        tube_M_ta_t_14*tube_q_z + tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
-            axis_y_tube_axes2_z*tube_d_c_m_t_4 + axis_z_tube_axes2_z*tube_d_c_m_t_6) -
-            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
-            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
-        )
-        tube_M_aa_t_14 = (
-        tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
-            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
-            tube_M_ta_t_21*tube_q_x - tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 +
-            axis_y_tube_axes2_y*tube_d_c_m_t_4 + axis_z_tube_axes2_y*tube_d_c_m_t_6)
-        )
-        tube_M_aa_t_15 = (
-        tube_M_ta_t_18*tube_q_x + tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
-            axis_y_tube_axes2_x*tube_M_aa_t_8 + axis_z_tube_axes2_x*tube_M_aa_t_9) -
-            tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
-            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
-            axis_z_tube_axes2_y*tube_M_aa_t_9)
+        tube_M_ta_t_9*tube_q_x + axis_x_tube_axes2_x*tube_M_aa_t_7*tube_q_y - tube_dalpha_c_m_zz -
+            tube_M_ta_t_6*tube_q_y - axis_x_tube_axes2_y*tube_M_aa_t_7*tube_q_x
         )
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0)
         )
         # (M_tt) translational block of M
         M_tt_tube_xx += tube_Q_xx
@@ -5430,35 +4549,35 @@ def _run_M(m, X):
         M_tt_tube_yz += tube_Q_yz
         M_tt_tube_zz += tube_Q_zz
         # (M_ta) coupling block of M
-        M_ta_tube_xx += tube_M_ta_t_13
-        M_ta_tube_xy += tube_M_ta_t_14
-        M_ta_tube_xz += tube_M_ta_t_15
-        M_ta_tube_yx += tube_M_ta_t_16
-        M_ta_tube_yy += tube_M_ta_t_17
-        M_ta_tube_yz += tube_M_ta_t_18
-        M_ta_tube_zx += tube_M_ta_t_19
-        M_ta_tube_zy += tube_M_ta_t_20
-        M_ta_tube_zz += tube_M_ta_t_21
+        M_ta_tube_xx += tube_M_ta_t_4
+        M_ta_tube_xy += tube_M_ta_t_5
+        M_ta_tube_xz += tube_M_ta_t_6
+        M_ta_tube_yx += tube_M_ta_t_7
+        M_ta_tube_yy += tube_M_ta_t_8
+        M_ta_tube_yz += tube_M_ta_t_9
+        M_ta_tube_zx += tube_M_ta_t_10
+        M_ta_tube_zy += tube_M_ta_t_11
+        M_ta_tube_zz += tube_M_ta_t_12
         # (M_aa) rotational block of M
-        M_aa_tube_xx += tube_M_aa_t_10
-        M_aa_tube_xy += tube_M_aa_t_11
-        M_aa_tube_xz += tube_M_aa_t_12
-        M_aa_tube_yy += tube_M_aa_t_13
-        M_aa_tube_yz += tube_M_aa_t_14
-        M_aa_tube_zz += tube_M_aa_t_15
+        M_aa_tube_xx += tube_M_aa_t_8
+        M_aa_tube_xy += tube_M_aa_t_9
+        M_aa_tube_xz += tube_M_aa_t_10
+        M_aa_tube_yy += tube_M_aa_t_11
+        M_aa_tube_yz += tube_M_aa_t_12
+        M_aa_tube_zz += tube_M_aa_t_13
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
-    M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
+    M_tt_xx = M_tt_tube_xx + m_star - M_tt_t
+    M_tt_xy = M_tt_tube_xy - M_tt_t_2
     M_tt_xz = M_tt_tube_xz + M_tt_ups_xz
     M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star
     M_tt_yz = M_tt_tube_yz + M_tt_ups_yz
     M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_tube_xx + M_ta_ups_xx
-    M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z
+    M_ta_xx = M_ta_t + M_ta_tube_xx - M_ta_ups_zz
+    M_ta_xy = M_ta_tube_xy + h_star_z - M_ta_t_2
     M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z
-    M_ta_yy = M_ta_tube_yy + M_ta_ups_yy
+    M_ta_yy = M_ta_tube_yy - M_ta_t
     M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x
     M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y
     M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x
@@ -5467,7 +4586,7 @@ def _run_M(m, X):
     M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx
     M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy
     M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz
-    M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy
+    M_aa_yy = J_star_yy + M_aa_tube_yy - M_aa_t
     M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz
     M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz
     # (M_tt) translational block of M
@@ -5512,14 +4631,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1100 mul, 780 add, 15 div, 14 sqrt, 0 trig
+# Z: 883 mul, 642 add, 12 div, 9 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_12, J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -5584,13 +4703,12 @@ def _run_Z(m, X, V):
     J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
-    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_zz = J_star_t_15 - J_star_xx - J_star_yy
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -5920,14 +5038,6 @@ def _run_Z(m, X, V):
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
         )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -6019,13 +5129,6 @@ def _run_Z(m, X, V):
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        # (tube-m1_c2) moment part 1 of constraint wrench 2
-        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of constraint wrench 2
-        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
@@ -6038,122 +5141,18 @@ def _run_Z(m, X, V):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
+        inv_tube_w_1_t_3 = 1.0/tube_w_1_t_3
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -6176,65 +5175,38 @@ def _run_Z(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_W_2_t_2 = tube_qd_2*tube_qd_2
-        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xx = -tube_W_2_t - tube_W_2_t_2
+        tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t = tube_q_3*tube_zeta_2_in_axes2_y
+        tube_bias_t_2 = tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-        tube_rel_o_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
-            axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
-        )
-        tube_rel_o_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_u_1_x + axis_z_tube_axes2_y*tube_u_1_y +
-            axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
-        )
         # (tube-nd_m1) rate of moment direction 1
         tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
@@ -6247,20 +5219,18 @@ def _run_Z(m, X, V):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -6270,19 +5240,18 @@ def _run_Z(m, X, V):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -6291,50 +5260,29 @@ def _run_Z(m, X, V):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-qdd_1_o) remainder of: acceleration of joint 1
-        tube_qdd_1_o_t = 1.35*tube_nu_1
-        tube_qdd_1_o_t_2 = 1.35*tube_nu_2
-        tube_qdd_1_o_t_3 = 1.35*tube_nu_3
-        tube_qdd_1_o = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77 -
-            tube_m2_w_1_t*tube_qdd_1_o_t_2)
+        tube_qdd_1_o_t = (
+        inv_tube_qd_1_t*(tube_m2_w_1_t*tube_nu_2 + tube_m3_w_1_t*tube_nu_3 -
+            tube_m1_w_1_t*tube_nu_1)
         )
         # (tube-qdd_2_o) remainder of: acceleration of joint 2
-        tube_qdd_2_o_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
-            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69)
+        tube_qdd_2_o = (
+        inv_tube_qd_1_t*(tube_m2_w_2_t*tube_nu_2 + tube_nu_1*tube_w_1_t + tube_nu_3*tube_w_1_t_2)
         )
-        tube_qdd_2_o_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
-            tube_qdd_1_o_t*tube_w_1_t_51 + tube_qdd_1_o_t_3*tube_w_1_t_52 +
-            tube_qdd_2_o_t*tube_w_1_t_53 + tube_rel_o_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_o_t_3 = (
-        tube_qdd_1_o_t*tube_w_1_t_15 + tube_qdd_1_o_t_3*tube_w_1_t_16 +
-            tube_qdd_2_o_t_2*tube_w_1_t_21 + tube_rel_o_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
-            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
-            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
-            tube_qdd_2_o_t*tube_w_1_t_25
-        )
-        tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
         # (tube-alpha_1_o) remainder of: angular acceleration of link 1
-        tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
-        tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
+        tube_alpha_1_o_t = tube_e_1_in_axes2_x*tube_qdd_1_o_t
+        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o_t
         # (tube-alpha_2_o) remainder of: angular acceleration of link 2
-        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
-        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
+        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz - tube_alpha_1_o_t
+        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y + tube_zeta_2_in_axes2_y
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
         tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o
         tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
-        tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
+        tube_B_2_o_in_axes2_zx = -tube_alpha_2_o_in_axes2_y - tube_zeta_2_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
         tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
@@ -6347,25 +5295,25 @@ def _run_Z(m, X, V):
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
         tube_acc_3_o_in_axes2_y = (
-        tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_2 + tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_g_in_axes2_y
         )
         tube_acc_3_o_in_axes2_z = (
-        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
+        -tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t = tube_omega_1_t*tube_omega_1_t
+        tube_f_3_t_2 = tube_W_2_in_axes2_xx*tube_h_3_in_spec2_x
         tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
         tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         # (tube-f_3_o) remainder of: inertia force of link 3 less its weight
         tube_f_3_o_in_axes2_x = (
-        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_f_3_t_2 - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_f_3_t_2 + tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_o_in_axes2_y = (
         tube_f_3_t_3 + tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_o_in_axes2_y*tube_link3_mass -
-            tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
+            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_alpha_1_o_t*tube_h_3_in_spec2_y
         )
         tube_f_3_o_in_axes2_z = (
         tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
@@ -6387,9 +5335,9 @@ def _run_Z(m, X, V):
         # (tube-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         tube_mu_2_o_in_axes2_x = (
         tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x -
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_t -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
         )
@@ -6403,73 +5351,42 @@ def _run_Z(m, X, V):
         )
         tube_mu_2_o_in_axes2_z = (
         tube_mu_2_t_3 + tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
             tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x - tube_mu_2_t_6 -
-            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_t
         )
         # (tube-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
         tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
-        # (tube-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
-        tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
-        tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
-        tube_G_o_t_4 = (
-        inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
-            tube_G_o_t*tube_w_1_t_25)
-        )
-        tube_G_o_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_o_t*tube_w_1_t_29 + tube_G_o_t_4*tube_w_1_t_69 +
-            tube_N_2_o_in_axes2_y*tube_c_2 - tube_G_o_t_2*tube_w_1_t_45 -
-            tube_G_o_t_3*tube_w_1_t_58 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x)
-        )
-        tube_G_o_in_axes2_y = (
-        tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_w_1_t_76
-        )
-        tube_G_o_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77
-        )
+        tube_N_2_o_t = tube_N_2_o_in_axes2_y*tube_c_2 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x
         # (tube-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
-        tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_m1_w_1_t
+        inv_tube_w_1_t_3*(tube_N_2_o_t*tube_m1_w_1_t - tube_N_2_o_in_axes2_z*tube_w_1_t)
         )
-        tube_G_m1_o = 1.35*tube_G_m1_o_t
         # (tube-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t
-        tube_G_m2_o = 1.35*tube_G_m2_o_t
-        # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m3_o_t = (
-        tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_m3_w_1_t
+        tube_G_m2_o = (
+        inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*tube_m2_w_2_t + tube_N_2_o_t*tube_m2_w_1_t)
         )
-        tube_G_m3_o = 1.35*tube_G_m3_o_t
+        # (tube-G_m3_o) remainder of: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m3_o = (
+        inv_tube_w_1_t_3*(tube_N_2_o_in_axes2_z*tube_w_1_t_2 + tube_N_2_o_t*tube_m3_w_1_t)
+        )
         # (tube-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_o_in_axes2_x = (
         -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
         )
         tube_G_m_o_in_axes2_y = (
-        tube_G_m2_o*tube_n_m2_in_axes2_y - tube_G_m1_o*tube_end_p1_in_axes2_z
+        tube_G_m1_o_t*tube_end_p1_in_axes2_z + tube_G_m2_o*tube_n_m2_in_axes2_y
         )
         tube_G_m_o_in_axes2_z = (
-        tube_G_m1_o*tube_n_m1_in_axes2_z + tube_G_m3_o*tube_n_m3_in_axes2_z
+        tube_G_m3_o*tube_n_m3_in_axes2_z - tube_G_m1_o_t*tube_n_m1_in_axes2_z
         )
         # (tube-U) velocity and gravity terms of the leg force
-        tube_U_x = (
-        axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_x*tube_G_o_in_axes2_z
-        )
-        tube_U_y = (
-        axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_y*tube_G_o_in_axes2_z
-        )
-        tube_U_z = (
-        axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
-            axis_z_tube_axes2_z*tube_G_o_in_axes2_z
-        )
+        tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x
+        tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x
+        tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x
         # (Z_a) rotational part of Z
         tube_Z_a_t = (
         axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
@@ -6486,10 +5403,8 @@ def _run_Z(m, X, V):
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0) & (abs(tube_qd_1_t) > _TOLERANCE * 1.0)
         )
         # (Z_t) translational part of Z
         Z_t_tube_x += tube_U_x
@@ -6939,7 +5854,7 @@ def _run_Hk(m, X):
     return ok, (out_Hk,)
 
 
-# constraint_bias: 397 mul, 240 add, 9 div, 8 sqrt, 0 trig
+# constraint_bias: 261 mul, 155 add, 5 div, 3 sqrt, 0 trig
 def _run_constraint_bias(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("constraint_bias")
@@ -7080,14 +5995,6 @@ def _run_constraint_bias(m, X, V):
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
         )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -7198,122 +6105,16 @@ def _run_constraint_bias(m, X, V):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -7336,53 +6137,37 @@ def _run_constraint_bias(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t
         # (tube-u_1) centripetal acceleration of the connection point
         tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t = tube_q_3*tube_zeta_2_in_axes2_y
+        tube_bias_t_2 = tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
+        tube_bias_in_axes2_y = tube_bias_t_2 + tube_bias_t_4
+        tube_bias_in_axes2_z = -2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
@@ -7404,20 +6189,18 @@ def _run_constraint_bias(m, X, V):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -7427,19 +6210,18 @@ def _run_constraint_bias(m, X, V):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -7448,10 +6230,10 @@ def _run_constraint_bias(m, X, V):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 - tube_m3_c1_t*tube_nu_3
         # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
@@ -7463,10 +6245,8 @@ def _run_constraint_bias(m, X, V):
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_qd_1_t) >
+            _TOLERANCE * 1.0)
         )
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
@@ -7477,7 +6257,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 1210 mul, 884 add, 15 div, 14 sqrt, 0 trig
+# required: 995 mul, 740 add, 12 div, 9 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -7576,9 +6356,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*m_star - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*m_star - W_p_t_5*h_star_y
@@ -7602,27 +6379,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -7855,7 +6629,7 @@ def _run_required(m, X, V, A):
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    R_t_t_4, R_t_t_5, R_t_t_6, R_a_tube_x, R_a_tube_y, R_a_tube_z = [0.0] * 6
+    R_t_tube_x, R_t_tube_y, R_t_tube_z, R_a_tube_x, R_a_tube_y, R_a_tube_z = [0.0] * 6
     for leg, k in legs[1]:
         (
         tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
@@ -7947,14 +6721,6 @@ def _run_required(m, X, V, A):
         tube_S_dot_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -8124,122 +6890,18 @@ def _run_required(m, X, V, A):
             axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
+        inv_tube_w_1_t_3 = 1.0/tube_w_1_t_3
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -8262,44 +6924,26 @@ def _run_required(m, X, V, A):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_W_2_t_2 = tube_qd_2*tube_qd_2
-        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xx = -tube_W_2_t - tube_W_2_t_2
+        tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t
         # (tube-S_ddot) acceleration of the connection point
         tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
         tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
@@ -8308,23 +6952,14 @@ def _run_required(m, X, V, A):
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
             axis_x_tube_axes2_z*tube_S_ddot_z
         )
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t = tube_q_3*tube_zeta_2_in_axes2_y
+        tube_bias_t_2 = tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
-            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
-        )
-        tube_rel_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
-            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
-        )
         # (tube-nd_m1) rate of moment direction 1
         tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
@@ -8337,20 +6972,18 @@ def _run_required(m, X, V, A):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -8360,19 +6993,18 @@ def _run_required(m, X, V, A):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -8381,10 +7013,10 @@ def _run_required(m, X, V, A):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
         tube_alpha_in_axes2_y = (
         alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
@@ -8410,44 +7042,25 @@ def _run_required(m, X, V, A):
         )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
-        tube_qdd_1_t = 1.35*tube_etad_1
-        tube_qdd_1_t_2 = 1.35*tube_etad_2
-        tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
-            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
-            tube_m2_w_1_t*tube_qdd_1_t_2)
+        tube_qdd_1_t = (
+        inv_tube_qd_1_t*(tube_etad_2*tube_m2_w_1_t + tube_etad_3*tube_m3_w_1_t -
+            tube_etad_1*tube_m1_w_1_t)
         )
         # (tube-qdd_2) acceleration of joint 2
-        tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
+        tube_qdd_2 = (
+        inv_tube_qd_1_t*(tube_etad_1*tube_w_1_t + tube_etad_2*tube_m2_w_2_t +
+            tube_etad_3*tube_w_1_t_2)
         )
-        tube_qdd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
-            + tube_rel_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_t_3 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
-            tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
-        )
-        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
-        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
+        tube_alpha_1_t = tube_e_1_in_axes2_x*tube_qdd_1_t
+        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1_t
         # (tube-alpha_2) angular acceleration of link 2
-        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
-        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
+        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz - tube_alpha_1_t
+        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y + tube_zeta_2_in_axes2_y
         # (tube-B_2) acceleration tensor of link 2
         tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
         tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
-        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
+        tube_B_2_in_axes2_zx = -tube_alpha_2_in_axes2_y - tube_zeta_2_in_axes2_y
         tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
         tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
@@ -8456,23 +7069,23 @@ def _run_required(m, X, V, A):
         tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_in_axes2_x = tube_S_ddot_in_axes2_x - tube_g_in_axes2_x
         tube_acc_3_in_axes2_y = (
-        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_2 + tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_g_in_axes2_y
         )
         tube_acc_3_in_axes2_z = (
-        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
+        -tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
         )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t = tube_omega_1_t*tube_omega_1_t
+        tube_f_3_t_2 = tube_W_2_in_axes2_xx*tube_h_3_in_spec2_x
         tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
         tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         tube_f_3_in_axes2_x = (
-        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_f_3_t_2 - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_f_3_t_2 + tube_acc_3_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_in_axes2_y = (
         tube_f_3_t_3 + tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_y*tube_link3_mass - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
+            tube_acc_3_in_axes2_y*tube_link3_mass + tube_alpha_1_t*tube_h_3_in_spec2_y
         )
         tube_f_3_in_axes2_z = (
         tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
@@ -8493,10 +7106,10 @@ def _run_required(m, X, V, A):
         )
         tube_mu_2_in_axes2_x = (
         tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x -
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy -
             tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_t - tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
         )
         tube_mu_2_in_axes2_y = (
         tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
@@ -8508,66 +7121,31 @@ def _run_required(m, X, V, A):
         )
         tube_mu_2_in_axes2_z = (
         tube_mu_2_t_3 + tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
             tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy
+            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_t
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
         tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
-        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
-        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
-        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
-        tube_G_t_4 = (
-        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
-            tube_G_t*tube_w_1_t_25)
-        )
-        tube_G_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
-            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
-            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
-        )
-        tube_G_in_axes2_y = (
-        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_w_1_t_76
-        )
-        tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_w_1_t_77
-        )
+        tube_N_2_t = tube_N_2_in_axes2_y*tube_c_2 - tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x
         # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m1_t = (
-        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_m1_w_1_t
-        )
-        tube_G_m1 = 1.35*tube_G_m1_t
+        tube_G_m1_t = inv_tube_w_1_t_3*(tube_N_2_t*tube_m1_w_1_t - tube_N_2_in_axes2_z*tube_w_1_t)
         # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_m2_w_1_t
-        tube_G_m2 = 1.35*tube_G_m2_t
-        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m3_t = (
-        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_m3_w_1_t
+        tube_G_m2 = (
+        inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*tube_m2_w_2_t + tube_N_2_t*tube_m2_w_1_t)
         )
-        tube_G_m3 = 1.35*tube_G_m3_t
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m3 = inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*tube_w_1_t_2 + tube_N_2_t*tube_m3_w_1_t)
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
-        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
-        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
+        tube_G_m_in_axes2_y = tube_G_m1_t*tube_end_p1_in_axes2_z + tube_G_m2*tube_n_m2_in_axes2_y
+        tube_G_m_in_axes2_z = tube_G_m3*tube_n_m3_in_axes2_z - tube_G_m1_t*tube_n_m1_in_axes2_z
         # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        tube_c_x = (
-        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
-            axis_z_tube_axes2_x*tube_G_in_axes2_z
-        )
-        tube_c_y = (
-        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
-            axis_z_tube_axes2_y*tube_G_in_axes2_z
-        )
-        tube_c_z = (
-        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
-            axis_z_tube_axes2_z*tube_G_in_axes2_z
-        )
+        tube_c_t = axis_x_tube_axes2_x*tube_f_3_in_axes2_x
+        tube_c_t_2 = axis_x_tube_axes2_y*tube_f_3_in_axes2_x
+        tube_c_t_3 = axis_x_tube_axes2_z*tube_f_3_in_axes2_x
         # (tube-c_m) moment of the leg on the platform without actuation
         tube_c_m_x = (
         -axis_x_tube_axes2_x*tube_G_m_in_axes2_x - axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
@@ -8582,9 +7160,9 @@ def _run_required(m, X, V, A):
             axis_z_tube_axes2_z*tube_G_m_in_axes2_z
         )
         # (R_a) moment that actuators and external wrench must give
-        tube_R_a_t = tube_c_y*tube_q_z - tube_c_m_x - tube_c_z*tube_q_y
-        tube_R_a_t_2 = tube_c_z*tube_q_x - tube_c_m_y - tube_c_x*tube_q_z
-        tube_R_a_t_3 = tube_c_x*tube_q_y - tube_c_m_z - tube_c_y*tube_q_x
+        tube_R_a_t = tube_c_t_3*tube_q_y - tube_c_m_x - tube_c_t_2*tube_q_z
+        tube_R_a_t_2 = tube_c_t*tube_q_z - tube_c_m_y - tube_c_t_3*tube_q_x
+        tube_R_a_t_3 = tube_c_t_2*tube_q_x - tube_c_m_z - tube_c_t*tube_q_y
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
         tube_Hk_a_1_y = tube_mu_c1_y + axis_y_tube_axes2_x*tube_q_z - axis_y_tube_axes2_z*tube_q_x
@@ -8596,15 +7174,13 @@ def _run_required(m, X, V, A):
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0) & (abs(tube_qd_1_t) > _TOLERANCE * 1.0)
         )
         # (R_t) force that actuators and external wrench must give
-        R_t_t_4 += tube_c_x
-        R_t_t_5 += tube_c_y
-        R_t_t_6 += tube_c_z
+        R_t_tube_x += tube_c_t
+        R_t_tube_y += tube_c_t_2
+        R_t_tube_z += tube_c_t_3
         # (R_a) moment that actuators and external wrench must give
         R_a_tube_x += tube_R_a_t
         R_a_tube_y += tube_R_a_t_2
@@ -8630,9 +7206,9 @@ def _run_required(m, X, V, A):
         out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
         out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - R_t_t - R_t_t_4
-    R_t_y = f_p_y - R_t_t_2 - R_t_t_5
-    R_t_z = f_p_z - R_t_t_3 - R_t_t_6
+    R_t_x = R_t_tube_x + f_p_x - R_t_t
+    R_t_y = R_t_tube_y + f_p_y - R_t_t_2
+    R_t_z = R_t_tube_z + f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
     R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x
     R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y
@@ -8810,7 +7386,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 495 mul, 306 add, 15 div, 14 sqrt, 0 trig
+# joint_rates: 351 mul, 221 add, 11 div, 9 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -9040,14 +7616,6 @@ def _run_joint_rates(m, X, V):
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
         )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -9139,13 +7707,6 @@ def _run_joint_rates(m, X, V):
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        # (tube-m1_c2) moment part 1 of constraint wrench 2
-        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of constraint wrench 2
-        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
@@ -9158,122 +7719,16 @@ def _run_joint_rates(m, X, V):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -9296,44 +7751,25 @@ def _run_joint_rates(m, X, V):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_qd_1_t) >
+            _TOLERANCE * 1.0)
         )
         # (tube-qd_1) rate of joint 1
-        out_qd[_qd_tube[0][leg]] = tube_qd_1
+        out_qd[_qd_tube[0][leg]] = -tube_qd_1_t_2
         # (tube-qd_2) rate of joint 2
         out_qd[_qd_tube[1][leg]] = tube_qd_2
         # (tube-qd_3) rate of joint 3
@@ -9341,7 +7777,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 731 mul, 467 add, 15 div, 14 sqrt, 0 trig
+# joint_accelerations: 535 mul, 345 add, 11 div, 9 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -9630,24 +8066,6 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_tube_axes2_z = (
         axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
         )
-        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
-        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
-        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
-        tube_S_dot_in_axes2_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -9739,13 +8157,6 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
-        # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
-        # (tube-m1_c2) moment part 1 of constraint wrench 2
-        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
-        # (tube-m3_c2) moment part 3 of constraint wrench 2
-        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
@@ -9758,122 +8169,16 @@ def _run_joint_accelerations(m, X, V, A):
         # (tube-mu3_c3) moment along direction 3 that goes with it
         tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -9896,44 +8201,25 @@ def _run_joint_accelerations(m, X, V, A):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_W_2_t_2 = tube_qd_2*tube_qd_2
-        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xx = -tube_W_2_t - tube_W_2_t_2
         # (tube-S_ddot) acceleration of the connection point
         tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
         tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
@@ -9942,24 +8228,10 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
             axis_x_tube_axes2_z*tube_S_ddot_z
         )
-        # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
-        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_in_axes2_x = tube_S_ddot_in_axes2_x + tube_W_2_t_3*tube_q_3
-        tube_rel_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
-            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
-        )
-        tube_rel_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
-            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
-        )
+        tube_rel_in_axes2_x = tube_S_ddot_in_axes2_x - tube_W_2_in_axes2_xx*tube_q_3
         # (tube-nd_m1) rate of moment direction 1
         tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
@@ -9972,20 +8244,18 @@ def _run_joint_accelerations(m, X, V, A):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -9995,19 +8265,18 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -10016,10 +8285,10 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
         tube_alpha_in_axes2_y = (
         alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
@@ -10045,44 +8314,23 @@ def _run_joint_accelerations(m, X, V, A):
         )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
-        tube_qdd_1_t = 1.35*tube_etad_1
-        tube_qdd_1_t_2 = 1.35*tube_etad_2
-        tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
-            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
-            tube_m2_w_1_t*tube_qdd_1_t_2)
+        tube_qdd_1_t = (
+        inv_tube_qd_1_t*(tube_etad_2*tube_m2_w_1_t + tube_etad_3*tube_m3_w_1_t -
+            tube_etad_1*tube_m1_w_1_t)
         )
         # (tube-qdd_2) acceleration of joint 2
-        tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
+        tube_qdd_2 = (
+        inv_tube_qd_1_t*(tube_etad_1*tube_w_1_t + tube_etad_2*tube_m2_w_2_t +
+            tube_etad_3*tube_w_1_t_2)
         )
-        tube_qdd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
-            + tube_rel_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_t_3 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
-            tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
-        )
-        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_qd_1_t) >
+            _TOLERANCE * 1.0)
         )
         # (tube-qdd_1) acceleration of joint 1
-        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
+        out_qdd[_qdd_tube[0][leg]] = -tube_qdd_1_t
         # (tube-qdd_2) acceleration of joint 2
         out_qdd[_qdd_tube[1][leg]] = tube_qdd_2
         # (tube-qdd_3) acceleration of joint 3
@@ -10319,7 +8567,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 1078 mul, 764 add, 15 div, 14 sqrt, 0 trig
+# legs: 872 mul, 626 add, 12 div, 9 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -10719,14 +8967,6 @@ def _run_legs(m, X, V, A):
         axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
             axis_x_tube_axes2_z*tube_S_dot_z
         )
-        tube_S_dot_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
-            axis_y_tube_axes2_z*tube_S_dot_z
-        )
-        tube_S_dot_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
-            axis_z_tube_axes2_z*tube_S_dot_z
-        )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -10895,122 +9135,18 @@ def _run_legs(m, X, V, A):
             axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
-        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
-        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1_t = inv_tube_size_c3*tube_n_m3_in_axes2_z
+        inv_tube_w_1_t_3 = 1.0/tube_w_1_t_3
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
-        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
-        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1_t = inv_tube_size_c3*tube_n_m1_in_axes2_z
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_mu3_c3_t*tube_n_m1_in_axes1_z - tube_mu1_c3*tube_n_m3_t_5
         # (tube-eta_1) rate at which the joints turn along moment direction 1
         tube_omega_in_axes2_y = (
         axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
@@ -11033,44 +9169,26 @@ def _run_legs(m, X, V, A):
         tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-qd_1) rate of joint 1
-        tube_qd_1_t = 1.35*tube_eta_1
-        tube_qd_1_t_2 = 1.35*tube_eta_2
-        tube_qd_1_t_3 = 1.35*tube_eta_3
-        tube_qd_1 = (
-        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        inv_tube_qd_1_t = 1.0/tube_qd_1_t
+        tube_qd_1_t_2 = (
+        inv_tube_qd_1_t*(tube_eta_2*tube_m2_w_1_t + tube_eta_3*tube_m3_w_1_t -
+            tube_eta_1*tube_m1_w_1_t)
         )
         # (tube-qd_2) rate of joint 2
-        tube_qd_2_t = (
-        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
+        tube_qd_2 = (
+        inv_tube_qd_1_t*(tube_eta_1*tube_w_1_t + tube_eta_2*tube_m2_w_2_t +
+            tube_eta_3*tube_w_1_t_2)
         )
-        tube_qd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
-        )
-        tube_qd_2_t_3 = (
-        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
-            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25
-        )
-        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
-        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
+        tube_omega_1_t = tube_e_1_in_axes2_x*tube_qd_1_t_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1_t_2
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
-        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         tube_W_2_t = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_W_2_t_2 = tube_qd_2*tube_qd_2
-        tube_W_2_t_3 = tube_W_2_t + tube_W_2_t_2
-        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        tube_W_2_in_axes2_xx = -tube_W_2_t - tube_W_2_t_2
+        tube_W_2_in_axes2_xy = -tube_omega_1_in_axes2_y*tube_omega_1_t
         # (tube-S_ddot) acceleration of the connection point
         tube_S_ddot_x = t_ddot_x + B_p_xy*tube_q_y + B_p_xz*tube_q_z - W_p_t_4*tube_q_x
         tube_S_ddot_y = t_ddot_y + B_p_yx*tube_q_x + B_p_yz*tube_q_z - W_p_t_5*tube_q_y
@@ -11079,23 +9197,14 @@ def _run_legs(m, X, V, A):
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
             axis_x_tube_axes2_z*tube_S_ddot_z
         )
+        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        tube_zeta_2_in_axes2_y = tube_omega_1_t*tube_qd_2
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
+        tube_bias_t = tube_q_3*tube_zeta_2_in_axes2_y
+        tube_bias_t_2 = tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
         tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
-        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_in_axes2_y = (
-        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
-            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
-        )
-        tube_rel_in_axes2_z = (
-        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
-            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
-        )
         # (tube-nd_m1) rate of moment direction 1
         tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
@@ -11108,20 +9217,18 @@ def _run_legs(m, X, V, A):
             tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
-        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t = tube_omega_1_t + tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_1_in_axes2_y - tube_omega_in_axes2_y
         tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 + tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y) - tube_nd_m1_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
+        tube_nu_1 = tube_nu_1_t_4 + tube_end_p1_in_axes2_z*tube_zeta_2_in_axes2_y
         # (tube-nd_m2) rate of moment direction 2
         tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
-        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        tube_end_p2_in_axes2_z*tube_omega_1_t + tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
         tube_nd_m2_in_axes2_y = (
@@ -11131,19 +9238,18 @@ def _run_legs(m, X, V, A):
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
         tube_nu_2_t = (
-        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y - tube_n_m2_in_axes2_y*tube_zeta_2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_t) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
-        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
+        tube_nu_2 = tube_nu_2_t + tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
         tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
-        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_y - tube_end_p3_in_axes2_y*tube_omega_1_t -
             tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
         tube_nd_m3_in_axes2_z = (
@@ -11152,10 +9258,10 @@ def _run_legs(m, X, V, A):
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nd_m3_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t_2*(tube_n_m3_in_axes2_z*tube_omega_1_t - tube_end_p3_in_axes2_z*tube_qd_2)
         )
-        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        tube_nu_3 = tube_nu_3_t + tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
         tube_alpha_in_axes2_y = (
         alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
@@ -11181,44 +9287,25 @@ def _run_legs(m, X, V, A):
         )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
-        tube_qdd_1_t = 1.35*tube_etad_1
-        tube_qdd_1_t_2 = 1.35*tube_etad_2
-        tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1 = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_t + tube_m3_w_1_t*tube_qdd_1_t_3 +
-            tube_rel_in_axes2_y*tube_w_1_t_76 + tube_rel_in_axes2_z*tube_w_1_t_77 -
-            tube_m2_w_1_t*tube_qdd_1_t_2)
+        tube_qdd_1_t = (
+        inv_tube_qd_1_t*(tube_etad_2*tube_m2_w_1_t + tube_etad_3*tube_m3_w_1_t -
+            tube_etad_1*tube_m1_w_1_t)
         )
         # (tube-qdd_2) acceleration of joint 2
-        tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
+        tube_qdd_2 = (
+        inv_tube_qd_1_t*(tube_etad_1*tube_w_1_t + tube_etad_2*tube_m2_w_2_t +
+            tube_etad_3*tube_w_1_t_2)
         )
-        tube_qdd_2_t_2 = (
-        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
-            + tube_rel_in_axes2_y*tube_w_1_t_50)
-        )
-        tube_qdd_2_t_3 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
-            tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
-        )
-        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
-        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
+        tube_alpha_1_t = tube_e_1_in_axes2_x*tube_qdd_1_t
+        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1_t
         # (tube-alpha_2) angular acceleration of link 2
-        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
-        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
+        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz - tube_alpha_1_t
+        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y + tube_zeta_2_in_axes2_y
         # (tube-B_2) acceleration tensor of link 2
         tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
         tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
-        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
+        tube_B_2_in_axes2_zx = -tube_alpha_2_in_axes2_y - tube_zeta_2_in_axes2_y
         tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
         tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
@@ -11227,23 +9314,23 @@ def _run_legs(m, X, V, A):
         tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_in_axes2_x = tube_S_ddot_in_axes2_x - tube_g_in_axes2_x
         tube_acc_3_in_axes2_y = (
-        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_2 + tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_g_in_axes2_y
         )
         tube_acc_3_in_axes2_z = (
-        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
+        -tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
         )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
-        tube_f_3_t_2 = tube_W_2_t_3*tube_h_3_in_spec2_x
+        tube_f_3_t = tube_omega_1_t*tube_omega_1_t
+        tube_f_3_t_2 = tube_W_2_in_axes2_xx*tube_h_3_in_spec2_x
         tube_f_3_t_3 = tube_h_3_in_spec2_z*(tube_W_2_t_2 + tube_f_3_t)
         tube_f_3_t_4 = tube_h_3_in_spec2_y*(tube_W_2_t + tube_f_3_t)
         tube_f_3_in_axes2_x = (
-        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
-            tube_f_3_t_2 - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_f_3_t_2 + tube_acc_3_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
         )
         tube_f_3_in_axes2_y = (
         tube_f_3_t_3 + tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_y*tube_link3_mass - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
+            tube_acc_3_in_axes2_y*tube_link3_mass + tube_alpha_1_t*tube_h_3_in_spec2_y
         )
         tube_f_3_in_axes2_z = (
         tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
@@ -11264,10 +9351,10 @@ def _run_legs(m, X, V, A):
         )
         tube_mu_2_in_axes2_x = (
         tube_mu_2_t + tube_mu_2_t_4 + tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x -
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy -
             tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_t - tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
         )
         tube_mu_2_in_axes2_y = (
         tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
@@ -11279,66 +9366,31 @@ def _run_legs(m, X, V, A):
         )
         tube_mu_2_in_axes2_z = (
         tube_mu_2_t_3 + tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
             tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy
+            - tube_mu_2_t_6 - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_t
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
         tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
-        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
-        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
-        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
-        tube_G_t_4 = (
-        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
-            tube_G_t*tube_w_1_t_25)
-        )
-        tube_G_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
-            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
-            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
-        )
-        tube_G_in_axes2_y = (
-        tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_w_1_t_76
-        )
-        tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_w_1_t_77
-        )
+        tube_N_2_t = tube_N_2_in_axes2_y*tube_c_2 - tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x
         # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m1_t = (
-        tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_m1_w_1_t
-        )
-        tube_G_m1 = 1.35*tube_G_m1_t
+        tube_G_m1_t = inv_tube_w_1_t_3*(tube_N_2_t*tube_m1_w_1_t - tube_N_2_in_axes2_z*tube_w_1_t)
         # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_m2_w_1_t
-        tube_G_m2 = 1.35*tube_G_m2_t
-        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m3_t = (
-        tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_m3_w_1_t
+        tube_G_m2 = (
+        inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*tube_m2_w_2_t + tube_N_2_t*tube_m2_w_1_t)
         )
-        tube_G_m3 = 1.35*tube_G_m3_t
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
+        tube_G_m3 = inv_tube_w_1_t_3*(tube_N_2_in_axes2_z*tube_w_1_t_2 + tube_N_2_t*tube_m3_w_1_t)
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
-        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
-        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
+        tube_G_m_in_axes2_y = tube_G_m1_t*tube_end_p1_in_axes2_z + tube_G_m2*tube_n_m2_in_axes2_y
+        tube_G_m_in_axes2_z = tube_G_m3*tube_n_m3_in_axes2_z - tube_G_m1_t*tube_n_m1_in_axes2_z
         # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        tube_c_x = (
-        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
-            axis_z_tube_axes2_x*tube_G_in_axes2_z
-        )
-        tube_c_y = (
-        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
-            axis_z_tube_axes2_y*tube_G_in_axes2_z
-        )
-        tube_c_z = (
-        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
-            axis_z_tube_axes2_z*tube_G_in_axes2_z
-        )
+        tube_c_t = axis_x_tube_axes2_x*tube_f_3_in_axes2_x
+        tube_c_t_2 = axis_x_tube_axes2_y*tube_f_3_in_axes2_x
+        tube_c_t_3 = axis_x_tube_axes2_z*tube_f_3_in_axes2_x
         # (tube-c_m) moment of the leg on the platform without actuation
         tube_c_m_x = (
         -axis_x_tube_axes2_x*tube_G_m_in_axes2_x - axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
@@ -11355,15 +9407,13 @@ def _run_legs(m, X, V, A):
         ok = (
         ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0) & (abs(tube_qd_1_t) > _TOLERANCE * 1.0)
         )
         # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        out_leg_force[_leg_force_tube[0][leg]] = tube_c_x
-        out_leg_force[_leg_force_tube[1][leg]] = tube_c_y
-        out_leg_force[_leg_force_tube[2][leg]] = tube_c_z
+        out_leg_force[_leg_force_tube[0][leg]] = -tube_c_t
+        out_leg_force[_leg_force_tube[1][leg]] = -tube_c_t_2
+        out_leg_force[_leg_force_tube[2][leg]] = -tube_c_t_3
         # (tube-c_m) moment of the leg on the platform without actuation
         out_leg_force[_leg_force_tube[3][leg]] = tube_c_m_x
         out_leg_force[_leg_force_tube[4][leg]] = tube_c_m_y
@@ -11596,7 +9646,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 431 mul, 292 add, 11 div, 23 sqrt, 0 trig
+# condition: 331 mul, 229 add, 7 div, 18 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -11973,127 +10023,24 @@ def _run_condition(m, X):
             axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
         )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
-        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
-        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
-        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*tube_m1_c1_t
-        tube_w_1_t_7 = 1.35*tube_m3_c1_t
-        tube_w_1_t_8 = 1.35*tube_m1_c2_t
-        tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
-        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
-        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
-        tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
-        tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
-        tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
-        tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7
-        tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9
-        tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21
-        tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8
-        tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21
-        tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16
-        tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25
-        tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25
-        tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25
-        tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3
-        tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29
-        tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29
-        tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29
-        tube_w_1_t_33 = (
-        sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
-            tube_w_1_t_20*tube_w_1_t_20)
-        )
-        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
-        tube_w_1_t_37 = (
-        tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
-        )
-        tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37
-        tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37
-        tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37
-        tube_w_1_t_41 = (
-        tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 - tube_w_1_t_27*tube_w_1_t_35
-        )
-        tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41
-        tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41
-        tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41
-        tube_w_1_t_45 = (
-        tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 - tube_w_1_t_31*tube_w_1_t_35
-        )
-        tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45
-        tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45
-        tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45
-        tube_w_1_t_49 = (
-        sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
-            tube_w_1_t_40*tube_w_1_t_40)
-        )
-        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
-        tube_w_1_t_53 = (
-        tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
-        )
-        tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
-        tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
-        tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
-        tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
-            - tube_w_1_t_47*tube_w_1_t_51
-        )
-        tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
-        tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
-        tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
-        tube_w_1_t_63 = (
-        sqrt(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54 +
-            tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57)
-        )
-        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
-        tube_w_1_t_69 = (
-        tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
-            tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
-        )
-        tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69
-        tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69
-        tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69
-        tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69
-        tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69
-        tube_w_1_t_75 = (
-        sqrt(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71 +
-            tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74)
-        )
+        tube_w_1_t = inv_tube_size_c3*tube_n_m3_t_5 + tube_mu3_c3_t*tube_n_m2_t_5
+        tube_w_1_t_2 = inv_tube_size_c3*tube_n_m1_in_axes1_z + tube_mu1_c3*tube_n_m2_t_5
+        tube_w_1_t_3 = tube_n_m1_in_axes2_z*tube_w_1_t + tube_n_m3_in_axes2_z*tube_w_1_t_2
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = tube_mu1_c3*tube_n_m3_in_axes2_z + tube_mu3_c3_t*tube_n_m1_in_axes2_z
+        # (tube-qd_1) rate of joint 1
+        tube_qd_1_t = inv_tube_size_c3*tube_f_c1_t + tube_m2_w_1_t*tube_n_m2_t_5
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_pivot_size = abs(tube_root_1_t)
         tube_pivot_size_2 = abs(tube_q_3_t)
         tube_pivot_size_3 = abs(tube_f_c1_t)
         tube_pivot_size_4 = abs(tube_size_c3)
-        tube_pivot_size_5 = abs(tube_w_1_t_13)
-        tube_pivot_size_6 = abs(tube_w_1_t_33)
-        tube_pivot_size_7 = abs(tube_w_1_t_49)
-        tube_pivot_size_8 = abs(tube_w_1_t_63)
-        tube_pivot_size_9 = abs(tube_w_1_t_75)
+        tube_pivot_size_5 = abs(tube_w_1_t_3)
+        tube_pivot_size_6 = abs(tube_qd_1_t)
         tube_least_pivots = (
-        least(least(least(least(least(least(least(least(0.7407407407407407*sqrt(tube_pivot_size),
+        least(least(least(least(least(0.7407407407407407*sqrt(tube_pivot_size),
             0.7407407407407407*sqrt(tube_pivot_size_2)), tube_pivot_size_3), tube_pivot_size_4),
-            0.7407407407407407*tube_pivot_size_5), tube_pivot_size_6), tube_pivot_size_7),
-            0.7407407407407407*tube_pivot_size_8), 0.7407407407407407*tube_pivot_size_9)
+            tube_pivot_size_5), tube_pivot_size_6)
         )
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         tube_Hk_a_1_x = tube_mu_c1_x + axis_y_tube_axes2_z*tube_q_y - axis_y_tube_axes2_y*tube_q_z
@@ -12114,10 +10061,8 @@ def _run_condition(m, X):
         clear = (
         clear & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
-            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
-            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
-            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
-            _TOLERANCE * 1.35)
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_3) >
+            _TOLERANCE * 1.0) & (abs(tube_qd_1_t) > _TOLERANCE * 1.0)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_tube += tube_spread_t_4
@@ -12141,7 +10086,7 @@ def _run_condition(m, X):
         out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
         out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
         out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
-        # (tube-w_1) force part of reciprocal wrench 1
+        # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_tube[0][leg]] = tube_least_pivots
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.25*spread_tube + 0.25*spread_ups)

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -610,6 +621,8 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real J_star_t_6 = R(0.5)*J_star_t_5;
     const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
+    const real J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
@@ -624,6 +637,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_6);
     KEEP(J_star_t_8);
+    KEEP(J_star_t_9);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1489,8 +1503,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1558,18 +1572,17 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
-    const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_t_10 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_t_11 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_11;
+    v->J_star_zz = m->J_star_t_9 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
-    const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
-    const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1601,7 +1614,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1618,11 +1631,11 @@ typedef struct {
         prs_w_1_z, prs_g_in_axes2_x, prs_g_in_axes2_y, prs_P_c_2_in_axes0_x, prs_H_a_1_x, prs_H_a_1_y,
         prs_H_a_1_z, prs_Hk_a_1_x, prs_Hk_a_1_y, prs_Hk_a_1_z, prs_S_dot_x, prs_S_dot_y, prs_S_dot_z,
         prs_qd_1_t, prs_u_1_x, prs_u_1_y, prs_u_1_z, prs_bias_t, prs_f_2_t, prs_f_2_t_2, prs_qdd_1_t,
-        prs_qdd_1, prs_d_c_xx, prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz,
-        prs_M_ta_t_3, prs_M_ta_t_4, prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9,
-        prs_M_ta_t_10, prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
-        prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6, prs_U_x, prs_U_y, prs_U_z, prs_Z_a_t, prs_Z_a_t_2,
-        prs_Z_a_t_3, prs_w_1_x_2, prs_w_1_y_2, prs_w_1_z_2, prs_c_x, prs_c_y, prs_c_z;
+        prs_qdd_1, prs_d_c_xx, prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz, prs_M_ta_t,
+        prs_M_ta_t_2, prs_M_ta_t_3, prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_7, prs_M_ta_t_8,
+        prs_M_ta_t_9, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3, prs_M_aa_t_4, prs_M_aa_t_5,
+        prs_M_aa_t_6, prs_U_x, prs_U_y, prs_U_z, prs_Z_a_t, prs_Z_a_t_2, prs_Z_a_t_3, prs_w_1_x_2,
+        prs_w_1_y_2, prs_w_1_z_2, prs_c_x, prs_c_y, prs_c_z;
 } values_prs;
 
 INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1833,25 +1846,22 @@ INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
         v->axis_y_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
         v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
     /* (M_ta) coupling block of M */
-    const real prs_M_ta_t = v->prs_d_c_xy*v->prs_q_z;
-    const real prs_M_ta_t_2 = v->prs_d_c_xz*v->prs_q_y;
-    v->prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-    v->prs_M_ta_t_4 = v->prs_d_c_xx*v->prs_q_z - v->prs_d_c_xz*v->prs_q_x;
-    v->prs_M_ta_t_5 = v->prs_d_c_xx*v->prs_q_y - v->prs_d_c_xy*v->prs_q_x;
-    v->prs_M_ta_t_6 = v->prs_d_c_yy*v->prs_q_z - v->prs_d_c_yz*v->prs_q_y;
-    const real prs_M_ta_t_7 = v->prs_d_c_yz*v->prs_q_x;
-    v->prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
-    v->prs_M_ta_t_9 = v->prs_d_c_xy*v->prs_q_y - v->prs_d_c_yy*v->prs_q_x;
-    v->prs_M_ta_t_10 = v->prs_d_c_yz*v->prs_q_z - v->prs_d_c_zz*v->prs_q_y;
-    v->prs_M_ta_t_11 = v->prs_d_c_zz*v->prs_q_x - v->prs_d_c_xz*v->prs_q_z;
-    v->prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
+    v->prs_M_ta_t = v->prs_d_c_xx*v->prs_q_z - v->prs_d_c_xz*v->prs_q_x;
+    v->prs_M_ta_t_2 = v->prs_d_c_xx*v->prs_q_y - v->prs_d_c_xy*v->prs_q_x;
+    v->prs_M_ta_t_3 = v->prs_d_c_yy*v->prs_q_z - v->prs_d_c_yz*v->prs_q_y;
+    const real prs_M_ta_t_4 = v->prs_d_c_yz*v->prs_q_x;
+    v->prs_M_ta_t_5 = prs_M_ta_t_4 - v->prs_d_c_xy*v->prs_q_z;
+    v->prs_M_ta_t_6 = v->prs_d_c_xy*v->prs_q_y - v->prs_d_c_yy*v->prs_q_x;
+    v->prs_M_ta_t_7 = v->prs_d_c_yz*v->prs_q_z - v->prs_d_c_zz*v->prs_q_y;
+    v->prs_M_ta_t_8 = v->prs_d_c_zz*v->prs_q_x - v->prs_d_c_xz*v->prs_q_z;
+    v->prs_M_ta_t_9 = prs_M_ta_t_4 - v->prs_d_c_xz*v->prs_q_y;
     /* (M_aa) rotational block of M */
-    v->prs_M_aa_t = v->prs_M_ta_t_10*v->prs_q_y - v->prs_M_ta_t_6*v->prs_q_z;
-    v->prs_M_aa_t_2 = v->prs_M_ta_t_11*v->prs_q_y - v->prs_M_ta_t_8*v->prs_q_z;
-    v->prs_M_aa_t_3 = v->prs_M_ta_t_12*v->prs_q_y - v->prs_M_ta_t_9*v->prs_q_z;
-    v->prs_M_aa_t_4 = v->prs_M_ta_t_11*v->prs_q_x + v->prs_M_ta_t_4*v->prs_q_z;
-    v->prs_M_aa_t_5 = v->prs_M_ta_t_5*v->prs_q_z - v->prs_M_ta_t_12*v->prs_q_x;
-    v->prs_M_aa_t_6 = v->prs_M_ta_t_9*v->prs_q_x - v->prs_M_ta_t_5*v->prs_q_y;
+    v->prs_M_aa_t = v->prs_M_ta_t_7*v->prs_q_y - v->prs_M_ta_t_3*v->prs_q_z;
+    v->prs_M_aa_t_2 = v->prs_M_ta_t_8*v->prs_q_y - v->prs_M_ta_t_5*v->prs_q_z;
+    v->prs_M_aa_t_3 = v->prs_M_ta_t_6*v->prs_q_z + v->prs_M_ta_t_9*v->prs_q_y;
+    v->prs_M_aa_t_4 = v->prs_M_ta_t*v->prs_q_z + v->prs_M_ta_t_8*v->prs_q_x;
+    v->prs_M_aa_t_5 = v->prs_M_ta_t_2*v->prs_q_z + v->prs_M_ta_t_9*v->prs_q_x;
+    v->prs_M_aa_t_6 = v->prs_M_ta_t_6*v->prs_q_x - v->prs_M_ta_t_2*v->prs_q_y;
 }
 
 INLINE void stage_prs_Z_dynamics(const prepared *m, size_t i, values_prs *v)
@@ -1951,11 +1961,8 @@ INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
     v->prs_c_z = m->prs_base_frame_zx[i]*prs_c_t + m->prs_base_frame_zy[i]*prs_c_t_2;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1971,14 +1978,66 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->unreachable[k] += o[0*count + at];
+    t->singular[k] += o[1*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2010,30 +2069,29 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
     gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.prs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v.prs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.prs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.prs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.prs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
     /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
+    gather(&terms[20*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[21*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[22*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
     /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    gather(&terms[23*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[24*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[25*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
     /* (prs-w_1) reciprocal vector 1 */
     o[0*count + k] = v.prs_w_1_x;
     o[1*count + k] = v.prs_w_1_y;
@@ -2094,13 +2152,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2111,41 +2172,41 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
     const real Z_p_x = s[27*w + k];
-    const real Z_t_x_of_legs = sums[21*w + k];
+    const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[28*w + k];
-    const real Z_t_y_of_legs = sums[22*w + k];
+    const real Z_t_y_of_legs = sums[21*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
     const real Z_p_z = s[29*w + k];
-    const real Z_t_z_of_legs = sums[23*w + k];
+    const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
     /* (Z_a) */
-    const real Z_a_x_of_legs = sums[24*w + k];
+    const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
-    const real Z_a_y_of_legs = sums[25*w + k];
+    const real Z_a_y_of_legs = sums[24*w + k];
     const real Z_q_y = s[31*w + k];
     const real Z_a_y = Z_q_y + Z_a_y_of_legs;
-    const real Z_a_z_of_legs = sums[26*w + k];
+    const real Z_a_z_of_legs = sums[25*w + k];
     const real Z_q_z = s[32*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
@@ -2162,7 +2223,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(2*NV + 1)*w + k] = -M_tt_t_5;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2171,7 +2231,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2180,7 +2239,6 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2210,17 +2268,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_prs[27*LEGS(LEGS_OF_prs)] = {0}, o_prs[16*LEGS(LEGS_OF_prs)] = {0};
+    real s[33] CLEARED, sums[26] CLEARED;
+    real terms_prs[26*LEGS(LEGS_OF_prs)] CLEARED, o_prs[16*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         dynamics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         dynamics_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < 26; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2231,14 +2289,14 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
+    real s[33*LANES], sums[26*LANES];
     real o_prs[16*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
@@ -2253,31 +2311,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2292,31 +2325,24 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
     gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.prs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v.prs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v.prs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v.prs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.prs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.prs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.prs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    gather(&terms[14*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
-}
-
-INLINE void M_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2330,13 +2356,16 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
     /* (M_ta) */
-    const real M_ta_xy_of_legs = sums[7*w + k];
+    const real M_ta_yy = sums[6*w + k];
+    const real M_ta_zz = sums[7*w + k];
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_xz_of_legs = sums[8*w + k];
+    const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
-    const real M_ta_yx_of_legs = sums[9*w + k];
+    const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
@@ -2347,22 +2376,22 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     /* (M_aa) */
     const real J_star_xx = s[21*w + k];
-    const real M_aa_xx_of_legs = sums[15*w + k];
+    const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
-    const real M_aa_xy_of_legs = sums[16*w + k];
+    const real J_star_xy = s[24*w + k];
+    const real M_aa_xy_of_legs = sums[15*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
-    const real M_aa_xz_of_legs = sums[17*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
-    const real M_aa_yy_of_legs = sums[18*w + k];
+    const real J_star_xz = s[25*w + k];
+    const real M_aa_xz_of_legs = sums[16*w + k];
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
+    const real J_star_yy = s[22*w + k];
+    const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
-    const real M_aa_yz_of_legs = sums[19*w + k];
+    const real J_star_yz = s[26*w + k];
+    const real M_aa_yz_of_legs = sums[18*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
-    const real M_aa_zz_of_legs = sums[20*w + k];
+    const real J_star_zz = s[23*w + k];
+    const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
@@ -2378,7 +2407,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(2*NV + 1)*w + k] = -M_tt_t_5;
     M[(2*NV + 2)*w + k] = M_tt_zz;
     /* (M_ta) */
-    const real M_ta_xx = sums[6*w + k];
     M[3*w + k] = M_ta_xx;
     M[3*NV*w + k] = M_ta_xx;
     M[4*w + k] = M_ta_xy;
@@ -2387,7 +2415,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
     M[(NV + 4)*w + k] = M_ta_yy;
     M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
@@ -2396,7 +2423,6 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(3*NV + 2)*w + k] = M_ta_zx;
     M[(2*NV + 4)*w + k] = M_ta_zy;
     M[(4*NV + 2)*w + k] = M_ta_zy;
-    const real M_ta_zz = sums[14*w + k];
     M[(2*NV + 5)*w + k] = M_ta_zz;
     M[(5*NV + 2)*w + k] = M_ta_zz;
     /* (M_aa) */
@@ -2417,17 +2443,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_prs[21*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[27] CLEARED, sums[20] CLEARED;
+    real terms_prs[20*LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         M_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
-        M_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
+        any_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < 20; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2436,19 +2462,19 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
+    real s[27*LANES], sums[20*LANES];
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_prs(k, k, LANES, o_prs, t);
+            any_place_prs(k, k, LANES, o_prs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2457,22 +2483,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2502,12 +2512,6 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
-}
-
-INLINE void Z_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2545,15 +2549,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_prs[6*LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Z_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
-        Z_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
+        any_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
@@ -2569,7 +2573,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2578,7 +2582,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_prs(k, k, LANES, o_prs, t);
+            any_place_prs(k, k, LANES, o_prs, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2587,22 +2591,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2639,10 +2627,10 @@ INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[9*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         H_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2658,7 +2646,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_prs[9*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2671,22 +2659,6 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -2718,10 +2690,10 @@ INLINE void Hk_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, 
 
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[7*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    Hk_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Hk_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2737,7 +2709,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
     real o_prs[7*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Hk_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2750,22 +2722,6 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
@@ -2791,10 +2747,10 @@ INLINE void constraint_bias_place_prs(size_t w, size_t i, size_t k, size_t at, s
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    constraint_bias_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraint_bias_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -2810,7 +2766,7 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraint_bias_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -2823,33 +2779,6 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -2860,9 +2789,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->platform_mass + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z
         - v->W_p_t_4*v->h_star_x;
@@ -2892,27 +2818,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3021,12 +2944,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[14*LEGS(LEGS_OF_prs)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_prs[6*LEGS(LEGS_OF_prs)] CLEARED, o_prs[14*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
-        required_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs, o_prs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
+            required_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs,
+                o_prs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         required_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, H, Hk, t);
@@ -3045,7 +2971,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_prs[14*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3063,22 +2989,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3109,10 +3019,10 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         inverse_kinematics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3128,7 +3038,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3141,22 +3051,6 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
@@ -3190,10 +3084,10 @@ INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_rates_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -3209,7 +3103,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3222,33 +3116,6 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3279,10 +3146,10 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_accelerations_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3298,7 +3165,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_prs[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3311,22 +3178,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, real *o)
 {
@@ -3346,10 +3197,10 @@ INLINE void constraints_place_prs(size_t w, size_t i, size_t k, size_t at, size_
 
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    constraints_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraints_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3365,7 +3216,7 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real o_prs[2*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraints_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3378,33 +3229,6 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
@@ -3450,12 +3274,14 @@ INLINE void legs_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] = {0};
-    real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED;
+    real o_prs[11*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
-        legs_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
+            legs_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
         legs_place_prs(1, i, 0, i, LEGS(LEGS_OF_prs), o_prs, leg_force, actuator, constraint_direction, t);
@@ -3463,22 +3289,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3513,12 +3323,6 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
 }
 
-INLINE void potential_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->unreachable[k] += o[0*count + at];
-    t->singular[k] += o[1*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3531,15 +3335,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_prs[LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
-        potential_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
+            potential_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs,
+                o_prs);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
-        potential_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
+        any_place_prs(0, i, LEGS(LEGS_OF_prs), o_prs, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_prs + n*LEGS(LEGS_OF_prs), LEGS_OF_prs);
@@ -3651,8 +3458,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[17*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_prs[LEGS(LEGS_OF_prs)] CLEARED, o_prs[17*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
@@ -3889,7 +3696,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
+    real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4101,8 +3908,8 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
+        beside_1[NV*NV] = {0}, solve_1[NV] CLEARED, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4159,9 +3966,9 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
-        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
-        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
+        CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED, subtract_1[NV] CLEARED, negative_1[3] CLEARED,
+        join_1[9] = {0}, solve_1[(NV + NC)] CLEARED, work[(NV + NC)*(PADDED(NV + NC))];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4246,8 +4053,8 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real split_1[3] = {0}, split_2[3] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0},
-        constraint_direction[3*NC] = {0}, add_forces_1[NL*NL] = {0}, forces[NL*NL] = {0};
+    real split_1[3] = {0}, split_2[3] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED,
+        constraint_direction[3*NC] CLEARED, add_forces_1[NL*NL] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4268,7 +4075,7 @@ int tripod_3prs_leg_reactions(const prepared *m, const real *X, const real *V, c
 int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4289,8 +4096,8 @@ int tripod_3prs_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4324,8 +4131,9 @@ int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *si
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        beside_1[NV*NV] = {0}, choose_length_1[1] CLEARED, divide_rows_1[NV*NV] CLEARED, sigma[NV] =
+        {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4358,11 +4166,11 @@ int tripod_3prs_manipulability(const prepared *m, const real *X, real *measure_o
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
-        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
-        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
-        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
+        subtract_2[1] CLEARED, choose_length_2[1] CLEARED, divide_rows_2[NV*NC] CLEARED,
+        transposed_1[NC*NV] = {0}, null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0},
+        product_1[NC*NU] = {0}, singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4409,9 +4217,10 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
-        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, beside_1[NV*NV] = {0}, subtract_1[1] CLEARED, choose_length_1[1] CLEARED,
+        divide_rows_1[NV*NV] CLEARED, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] =
+        {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4443,8 +4252,8 @@ int tripod_3prs_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, residual[6] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] CLEARED,
+        constraints[3] CLEARED, negative_1[3] CLEARED, residual[6] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4463,7 +4272,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4531,7 +4340,7 @@ int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, co
 
 static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, residual[NC] = {0};
+    real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4614,7 +4423,7 @@ int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -4627,7 +4436,7 @@ int tripod_3prs_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4639,7 +4448,7 @@ int tripod_3prs_momentum(const prepared *m, const real *X, const real *V, real *
 int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4654,7 +4463,7 @@ int tripod_3prs_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4668,7 +4477,7 @@ int tripod_3prs_within_limits(const prepared *m, const real *X, real *within_out
 
 int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4679,7 +4488,7 @@ int tripod_3prs_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4691,7 +4500,7 @@ int tripod_3prs_actuator_rates(const prepared *m, const real *X, const real *V, 
 int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4703,7 +4512,7 @@ int tripod_3prs_actuator_accelerations(const prepared *m, const real *X, const r
 int tripod_3prs_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4763,7 +4572,7 @@ int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -4779,7 +4588,7 @@ int tripod_3prs_retract(const real *X, const real *step, real *X_moved_out)
 
 int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -4795,7 +4604,8 @@ int tripod_3prs_difference(const real *X0, const real *X1, real *step_out)
 
 int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

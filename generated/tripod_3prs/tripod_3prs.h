@@ -113,7 +113,7 @@ typedef struct {
             prs_root_2_t[4], prs_size[4], prs_size_t[4];
     tripod_3prs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-            J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, platform_mass, spread_t;
 } tripod_3prs_model;
@@ -132,12 +132,12 @@ extern const char *const tripod_3prs_ACTUATOR_NAMES[TRIPOD_3PRS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *model);
 
-/* Inertia matrix M. 411 mul, 318 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 408 mul, 313 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3prs_M(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *M);
 size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 411 mul, 291 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 408 mul, 291 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3prs_Z(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *Z);
@@ -193,7 +193,7 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 708 mul, 522 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 705 mul, 517 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H);
@@ -201,7 +201,7 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 498 mul, 363 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 489 mul, 357 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3prs_inverse_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
@@ -211,7 +211,7 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
     tripod_3prs_real *wrench, tripod_3prs_real *tau, tripod_3prs_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 708 mul, 522 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 705 mul, 517 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3prs_forward_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
@@ -307,7 +307,7 @@ int tripod_3prs_dissipation(const tripod_3prs_model *model, const tripod_3prs_re
 size_t tripod_3prs_dissipation_batch(const tripod_3prs_model *model, size_t n, const
     tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 411 mul, 318 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 408 mul, 313 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3prs_momentum(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *momentum);

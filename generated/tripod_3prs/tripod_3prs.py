@@ -551,6 +551,7 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
+    J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
@@ -623,9 +624,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
         (prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
@@ -641,7 +642,7 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x,
                 h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
@@ -657,9 +658,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_prs,
         (prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
@@ -1803,14 +1804,15 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 708 mul, 522 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 705 mul, 517 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1877,15 +1879,14 @@ def _run_dynamics(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1901,11 +1902,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_prs_xy, M_ta_prs_xz,
-        M_ta_prs_yx, M_ta_yy, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_ta_zz, M_aa_prs_xx,
-        M_aa_prs_xy, M_aa_prs_xz, M_aa_t, M_aa_prs_yz, M_aa_prs_zz, Z_t_prs_x, Z_t_prs_y,
-        Z_t_prs_z, Z_a_prs_x, Z_a_prs_y, Z_a_prs_z,
-    ) = [0.0] * 27
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_yy, M_ta_zz, M_ta_prs_xy,
+        M_ta_prs_xz, M_ta_prs_yx, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_aa_prs_xx, M_aa_prs_xy,
+        M_aa_t, M_aa_t_2, M_aa_prs_yz, M_aa_prs_zz, Z_t_prs_x, Z_t_prs_y, Z_t_prs_z, Z_a_prs_x,
+        Z_a_prs_y, Z_a_prs_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
@@ -2098,25 +2099,22 @@ def _run_dynamics(m, X, V):
         prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x + axis_y_prs_axes2_y*prs_G_o_in_axes2_y
         prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x + axis_y_prs_axes2_z*prs_G_o_in_axes2_y
         # (M_ta) coupling block of M
-        prs_M_ta_t = prs_d_c_xy*prs_q_z
-        prs_M_ta_t_2 = prs_d_c_xz*prs_q_y
-        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
-        prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
-        prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
-        prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
-        prs_M_ta_t_7 = prs_d_c_yz*prs_q_x
-        prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t
-        prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
-        prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
-        prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
-        prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7
+        prs_M_ta_t = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
+        prs_M_ta_t_2 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
+        prs_M_ta_t_3 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
+        prs_M_ta_t_4 = prs_d_c_yz*prs_q_x
+        prs_M_ta_t_5 = prs_M_ta_t_4 - prs_d_c_xy*prs_q_z
+        prs_M_ta_t_6 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
+        prs_M_ta_t_7 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
+        prs_M_ta_t_8 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
+        prs_M_ta_t_9 = prs_M_ta_t_4 - prs_d_c_xz*prs_q_y
         # (M_aa) rotational block of M
-        prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z
-        prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z
-        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z
-        prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z
-        prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x
-        prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y
+        prs_M_aa_t = prs_M_ta_t_7*prs_q_y - prs_M_ta_t_3*prs_q_z
+        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_y - prs_M_ta_t_5*prs_q_z
+        prs_M_aa_t_3 = prs_M_ta_t_6*prs_q_z + prs_M_ta_t_9*prs_q_y
+        prs_M_aa_t_4 = prs_M_ta_t*prs_q_z + prs_M_ta_t_8*prs_q_x
+        prs_M_aa_t_5 = prs_M_ta_t_2*prs_q_z + prs_M_ta_t_9*prs_q_x
+        prs_M_aa_t_6 = prs_M_ta_t_6*prs_q_x - prs_M_ta_t_2*prs_q_y
         # (Z_a) rotational part of Z
         prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z
         prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x
@@ -2141,20 +2139,19 @@ def _run_dynamics(m, X, V):
         M_tt_t_5 += prs_d_c_yz
         M_tt_t_6 += prs_d_c_zz
         # (M_ta) coupling block of M
-        M_ta_xx += prs_M_ta_t_3
-        M_ta_prs_xy += -prs_M_ta_t_4
-        M_ta_prs_xz += prs_M_ta_t_5
-        M_ta_prs_yx += prs_M_ta_t_6
-        M_ta_yy += prs_M_ta_t_8
-        M_ta_prs_yz += prs_M_ta_t_9
-        M_ta_prs_zx += prs_M_ta_t_10
-        M_ta_prs_zy += prs_M_ta_t_11
-        M_ta_zz += prs_M_ta_t_12
+        M_ta_yy += prs_M_ta_t_5
+        M_ta_zz += -prs_M_ta_t_9
+        M_ta_prs_xy += -prs_M_ta_t
+        M_ta_prs_xz += prs_M_ta_t_2
+        M_ta_prs_yx += prs_M_ta_t_3
+        M_ta_prs_yz += prs_M_ta_t_6
+        M_ta_prs_zx += prs_M_ta_t_7
+        M_ta_prs_zy += prs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_prs_xx += prs_M_aa_t
         M_aa_prs_xy += prs_M_aa_t_2
-        M_aa_prs_xz += prs_M_aa_t_3
-        M_aa_t += prs_M_aa_t_4
+        M_aa_t += prs_M_aa_t_3
+        M_aa_t_2 += prs_M_aa_t_4
         M_aa_prs_yz += prs_M_aa_t_5
         M_aa_prs_zz += prs_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2188,6 +2185,7 @@ def _run_dynamics(m, X, V):
     M_tt_yy = platform_mass - M_tt_t_4
     M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_prs_xy + h_star_z
     M_ta_xz = M_ta_prs_xz - h_star_y
     M_ta_yx = M_ta_prs_yx - h_star_z
@@ -2197,8 +2195,8 @@ def _run_dynamics(m, X, V):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_prs_xx
     M_aa_xy = J_star_xy + M_aa_prs_xy
-    M_aa_xz = J_star_xz + M_aa_prs_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_prs_yz
     M_aa_zz = J_star_zz + M_aa_prs_zz
     # (Z_t) translational part of Z
@@ -2259,14 +2257,14 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 411 mul, 318 add, 6 div, 6 sqrt, 0 trig
+# M: 408 mul, 313 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
-        platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2316,20 +2314,19 @@ def _run_M(m, X):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     (
-    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_prs_xy, M_ta_prs_xz,
-        M_ta_prs_yx, M_ta_yy, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_ta_zz, M_aa_prs_xx,
-        M_aa_prs_xy, M_aa_prs_xz, M_aa_t, M_aa_prs_yz, M_aa_prs_zz,
-    ) = [0.0] * 21
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_yy, M_ta_zz, M_ta_prs_xy,
+        M_ta_prs_xz, M_ta_prs_yx, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_aa_prs_xx, M_aa_prs_xy,
+        M_aa_t, M_aa_t_2, M_aa_prs_yz, M_aa_prs_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
@@ -2445,25 +2442,22 @@ def _run_M(m, X):
             axis_y_prs_axes2_z*prs_d_G_in_axes2_yy)
         )
         # (M_ta) coupling block of M
-        prs_M_ta_t = prs_d_c_xy*prs_q_z
-        prs_M_ta_t_2 = prs_d_c_xz*prs_q_y
-        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
-        prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
-        prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
-        prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
-        prs_M_ta_t_7 = prs_d_c_yz*prs_q_x
-        prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t
-        prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
-        prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
-        prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
-        prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7
+        prs_M_ta_t = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
+        prs_M_ta_t_2 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
+        prs_M_ta_t_3 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
+        prs_M_ta_t_4 = prs_d_c_yz*prs_q_x
+        prs_M_ta_t_5 = prs_M_ta_t_4 - prs_d_c_xy*prs_q_z
+        prs_M_ta_t_6 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
+        prs_M_ta_t_7 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
+        prs_M_ta_t_8 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
+        prs_M_ta_t_9 = prs_M_ta_t_4 - prs_d_c_xz*prs_q_y
         # (M_aa) rotational block of M
-        prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z
-        prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z
-        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z
-        prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z
-        prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x
-        prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y
+        prs_M_aa_t = prs_M_ta_t_7*prs_q_y - prs_M_ta_t_3*prs_q_z
+        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_y - prs_M_ta_t_5*prs_q_z
+        prs_M_aa_t_3 = prs_M_ta_t_6*prs_q_z + prs_M_ta_t_9*prs_q_y
+        prs_M_aa_t_4 = prs_M_ta_t*prs_q_z + prs_M_ta_t_8*prs_q_x
+        prs_M_aa_t_5 = prs_M_ta_t_2*prs_q_z + prs_M_ta_t_9*prs_q_x
+        prs_M_aa_t_6 = prs_M_ta_t_6*prs_q_x - prs_M_ta_t_2*prs_q_y
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
             (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
@@ -2476,20 +2470,19 @@ def _run_M(m, X):
         M_tt_t_5 += prs_d_c_yz
         M_tt_t_6 += prs_d_c_zz
         # (M_ta) coupling block of M
-        M_ta_xx += prs_M_ta_t_3
-        M_ta_prs_xy += -prs_M_ta_t_4
-        M_ta_prs_xz += prs_M_ta_t_5
-        M_ta_prs_yx += prs_M_ta_t_6
-        M_ta_yy += prs_M_ta_t_8
-        M_ta_prs_yz += prs_M_ta_t_9
-        M_ta_prs_zx += prs_M_ta_t_10
-        M_ta_prs_zy += prs_M_ta_t_11
-        M_ta_zz += prs_M_ta_t_12
+        M_ta_yy += prs_M_ta_t_5
+        M_ta_zz += -prs_M_ta_t_9
+        M_ta_prs_xy += -prs_M_ta_t
+        M_ta_prs_xz += prs_M_ta_t_2
+        M_ta_prs_yx += prs_M_ta_t_3
+        M_ta_prs_yz += prs_M_ta_t_6
+        M_ta_prs_zx += prs_M_ta_t_7
+        M_ta_prs_zy += prs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_prs_xx += prs_M_aa_t
         M_aa_prs_xy += prs_M_aa_t_2
-        M_aa_prs_xz += prs_M_aa_t_3
-        M_aa_t += prs_M_aa_t_4
+        M_aa_t += prs_M_aa_t_3
+        M_aa_t_2 += prs_M_aa_t_4
         M_aa_prs_yz += prs_M_aa_t_5
         M_aa_prs_zz += prs_M_aa_t_6
     # (M_tt) translational block of M
@@ -2497,6 +2490,7 @@ def _run_M(m, X):
     M_tt_yy = platform_mass - M_tt_t_4
     M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_prs_xy + h_star_z
     M_ta_xz = M_ta_prs_xz - h_star_y
     M_ta_yx = M_ta_prs_yx - h_star_z
@@ -2506,8 +2500,8 @@ def _run_M(m, X):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_prs_xx
     M_aa_xy = J_star_xy + M_aa_prs_xy
-    M_aa_xz = J_star_xz + M_aa_prs_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_prs_yz
     M_aa_zz = J_star_zz + M_aa_prs_zz
     # (M_tt) translational block of M
@@ -2552,14 +2546,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 411 mul, 291 add, 6 div, 6 sqrt, 0 trig
+# Z: 408 mul, 291 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2622,15 +2616,14 @@ def _run_Z(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3067,7 +3060,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 498 mul, 363 add, 6 div, 6 sqrt, 0 trig
+# required: 489 mul, 357 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3166,9 +3159,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
@@ -3192,27 +3182,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_prs_x, R_a_prs_y, R_a_prs_z = [0.0] * 6
     for leg, k in legs[0]:
         (

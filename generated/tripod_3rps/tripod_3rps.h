@@ -109,7 +109,7 @@ typedef struct {
             rps_potential_t_2[4], rps_potential_t_3[4];
     tripod_3rps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-            J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, platform_mass, spread_t;
 } tripod_3rps_model;
@@ -128,12 +128,12 @@ extern const char *const tripod_3rps_ACTUATOR_NAMES[TRIPOD_3RPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *model);
 
-/* Inertia matrix M. 309 mul, 267 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 306 mul, 262 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3rps_M(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *M);
 size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 345 mul, 258 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 342 mul, 258 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3rps_Z(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *Z);
@@ -189,7 +189,7 @@ size_t tripod_3rps_joint_accelerations_batch(const tripod_3rps_model *model, siz
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 558 mul, 450 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 555 mul, 445 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3rps_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H);
@@ -197,7 +197,7 @@ size_t tripod_3rps_dynamics_batch(const tripod_3rps_model *model, size_t n, cons
     *X, const tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 405 mul, 315 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 396 mul, 309 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3rps_inverse_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -207,7 +207,7 @@ size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
     tripod_3rps_real *wrench, tripod_3rps_real *tau, tripod_3rps_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 558 mul, 450 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 555 mul, 445 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3rps_forward_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -303,7 +303,7 @@ int tripod_3rps_dissipation(const tripod_3rps_model *model, const tripod_3rps_re
 size_t tripod_3rps_dissipation_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *dissipation, int *status);
 
-/* Generalised momentum M V. 309 mul, 267 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 306 mul, 262 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3rps_momentum(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *momentum);

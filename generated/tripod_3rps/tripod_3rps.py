@@ -541,6 +541,7 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
+    J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
@@ -606,9 +607,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
         (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -623,7 +624,7 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x,
                 h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
@@ -637,9 +638,9 @@ def _prepare(p):
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rps,
         (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -1771,14 +1772,15 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 558 mul, 450 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 555 mul, 445 add, 3 div, 3 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1845,15 +1847,14 @@ def _run_dynamics(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -1869,11 +1870,11 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_rps_xy, M_ta_rps_xz,
-        M_ta_rps_yx, M_ta_yy, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_ta_zz, M_aa_rps_xx,
-        M_aa_rps_xy, M_aa_rps_xz, M_aa_t, M_aa_rps_yz, M_aa_rps_zz, Z_t_rps_x, Z_t_rps_y,
-        Z_t_rps_z, Z_a_rps_x, Z_a_rps_y, Z_a_rps_z,
-    ) = [0.0] * 27
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_yy, M_ta_zz, M_ta_rps_xy,
+        M_ta_rps_xz, M_ta_rps_yx, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_aa_rps_xx, M_aa_rps_xy,
+        M_aa_t, M_aa_t_2, M_aa_rps_yz, M_aa_rps_zz, Z_t_rps_x, Z_t_rps_y, Z_t_rps_z, Z_a_rps_x,
+        Z_a_rps_y, Z_a_rps_z,
+    ) = [0.0] * 26
     for leg, k in legs[0]:
         (
         rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
@@ -2009,25 +2010,22 @@ def _run_dynamics(m, X, V):
         rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_y*rps_G_o_in_axes1_y
         rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_z*rps_G_o_in_axes1_y
         # (M_ta) coupling block of M
-        rps_M_ta_t = rps_d_c_xy*rps_q_z
-        rps_M_ta_t_2 = rps_d_c_xz*rps_q_y
-        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
-        rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
-        rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
-        rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
-        rps_M_ta_t_7 = rps_d_c_yz*rps_q_x
-        rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t
-        rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
-        rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
-        rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
-        rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7
+        rps_M_ta_t = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
+        rps_M_ta_t_2 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
+        rps_M_ta_t_3 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
+        rps_M_ta_t_4 = rps_d_c_yz*rps_q_x
+        rps_M_ta_t_5 = rps_M_ta_t_4 - rps_d_c_xy*rps_q_z
+        rps_M_ta_t_6 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
+        rps_M_ta_t_7 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
+        rps_M_ta_t_8 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
+        rps_M_ta_t_9 = rps_M_ta_t_4 - rps_d_c_xz*rps_q_y
         # (M_aa) rotational block of M
-        rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z
-        rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z
-        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z
-        rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z
-        rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x
-        rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y
+        rps_M_aa_t = rps_M_ta_t_7*rps_q_y - rps_M_ta_t_3*rps_q_z
+        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_y - rps_M_ta_t_5*rps_q_z
+        rps_M_aa_t_3 = rps_M_ta_t_6*rps_q_z + rps_M_ta_t_9*rps_q_y
+        rps_M_aa_t_4 = rps_M_ta_t*rps_q_z + rps_M_ta_t_8*rps_q_x
+        rps_M_aa_t_5 = rps_M_ta_t_2*rps_q_z + rps_M_ta_t_9*rps_q_x
+        rps_M_aa_t_6 = rps_M_ta_t_6*rps_q_x - rps_M_ta_t_2*rps_q_y
         # (Z_a) rotational part of Z
         rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z
         rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x
@@ -2052,20 +2050,19 @@ def _run_dynamics(m, X, V):
         M_tt_t_5 += rps_d_c_yz
         M_tt_t_6 += rps_d_c_zz
         # (M_ta) coupling block of M
-        M_ta_xx += rps_M_ta_t_3
-        M_ta_rps_xy += -rps_M_ta_t_4
-        M_ta_rps_xz += rps_M_ta_t_5
-        M_ta_rps_yx += rps_M_ta_t_6
-        M_ta_yy += rps_M_ta_t_8
-        M_ta_rps_yz += rps_M_ta_t_9
-        M_ta_rps_zx += rps_M_ta_t_10
-        M_ta_rps_zy += rps_M_ta_t_11
-        M_ta_zz += rps_M_ta_t_12
+        M_ta_yy += rps_M_ta_t_5
+        M_ta_zz += -rps_M_ta_t_9
+        M_ta_rps_xy += -rps_M_ta_t
+        M_ta_rps_xz += rps_M_ta_t_2
+        M_ta_rps_yx += rps_M_ta_t_3
+        M_ta_rps_yz += rps_M_ta_t_6
+        M_ta_rps_zx += rps_M_ta_t_7
+        M_ta_rps_zy += rps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rps_xx += rps_M_aa_t
         M_aa_rps_xy += rps_M_aa_t_2
-        M_aa_rps_xz += rps_M_aa_t_3
-        M_aa_t += rps_M_aa_t_4
+        M_aa_t += rps_M_aa_t_3
+        M_aa_t_2 += rps_M_aa_t_4
         M_aa_rps_yz += rps_M_aa_t_5
         M_aa_rps_zz += rps_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2099,6 +2096,7 @@ def _run_dynamics(m, X, V):
     M_tt_yy = platform_mass - M_tt_t_4
     M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rps_xy + h_star_z
     M_ta_xz = M_ta_rps_xz - h_star_y
     M_ta_yx = M_ta_rps_yx - h_star_z
@@ -2108,8 +2106,8 @@ def _run_dynamics(m, X, V):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rps_xx
     M_aa_xy = J_star_xy + M_aa_rps_xy
-    M_aa_xz = J_star_xz + M_aa_rps_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_rps_yz
     M_aa_zz = J_star_zz + M_aa_rps_zz
     # (Z_t) translational part of Z
@@ -2170,14 +2168,14 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 309 mul, 267 add, 3 div, 3 sqrt, 0 trig
+# M: 306 mul, 262 add, 3 div, 3 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
-        platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2227,20 +2225,19 @@ def _run_M(m, X):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     (
-    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_rps_xy, M_ta_rps_xz,
-        M_ta_rps_yx, M_ta_yy, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_ta_zz, M_aa_rps_xx,
-        M_aa_rps_xy, M_aa_rps_xz, M_aa_t, M_aa_rps_yz, M_aa_rps_zz,
-    ) = [0.0] * 21
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_yy, M_ta_zz, M_ta_rps_xy,
+        M_ta_rps_xz, M_ta_rps_yx, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_aa_rps_xx, M_aa_rps_xy,
+        M_aa_t, M_aa_t_2, M_aa_rps_yz, M_aa_rps_zz,
+    ) = [0.0] * 20
     for leg, k in legs[0]:
         (
         rps_J_group_1_in_axes1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
@@ -2311,25 +2308,22 @@ def _run_M(m, X):
             axis_y_rps_axes1_z*rps_d_G_in_axes1_yy)
         )
         # (M_ta) coupling block of M
-        rps_M_ta_t = rps_d_c_xy*rps_q_z
-        rps_M_ta_t_2 = rps_d_c_xz*rps_q_y
-        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
-        rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
-        rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
-        rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
-        rps_M_ta_t_7 = rps_d_c_yz*rps_q_x
-        rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t
-        rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
-        rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
-        rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
-        rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7
+        rps_M_ta_t = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
+        rps_M_ta_t_2 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
+        rps_M_ta_t_3 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
+        rps_M_ta_t_4 = rps_d_c_yz*rps_q_x
+        rps_M_ta_t_5 = rps_M_ta_t_4 - rps_d_c_xy*rps_q_z
+        rps_M_ta_t_6 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
+        rps_M_ta_t_7 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
+        rps_M_ta_t_8 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
+        rps_M_ta_t_9 = rps_M_ta_t_4 - rps_d_c_xz*rps_q_y
         # (M_aa) rotational block of M
-        rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z
-        rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z
-        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z
-        rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z
-        rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x
-        rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y
+        rps_M_aa_t = rps_M_ta_t_7*rps_q_y - rps_M_ta_t_3*rps_q_z
+        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_y - rps_M_ta_t_5*rps_q_z
+        rps_M_aa_t_3 = rps_M_ta_t_6*rps_q_z + rps_M_ta_t_9*rps_q_y
+        rps_M_aa_t_4 = rps_M_ta_t*rps_q_z + rps_M_ta_t_8*rps_q_x
+        rps_M_aa_t_5 = rps_M_ta_t_2*rps_q_z + rps_M_ta_t_9*rps_q_x
+        rps_M_aa_t_6 = rps_M_ta_t_6*rps_q_x - rps_M_ta_t_2*rps_q_y
         ok = (
         ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
             0.75)
@@ -2342,20 +2336,19 @@ def _run_M(m, X):
         M_tt_t_5 += rps_d_c_yz
         M_tt_t_6 += rps_d_c_zz
         # (M_ta) coupling block of M
-        M_ta_xx += rps_M_ta_t_3
-        M_ta_rps_xy += -rps_M_ta_t_4
-        M_ta_rps_xz += rps_M_ta_t_5
-        M_ta_rps_yx += rps_M_ta_t_6
-        M_ta_yy += rps_M_ta_t_8
-        M_ta_rps_yz += rps_M_ta_t_9
-        M_ta_rps_zx += rps_M_ta_t_10
-        M_ta_rps_zy += rps_M_ta_t_11
-        M_ta_zz += rps_M_ta_t_12
+        M_ta_yy += rps_M_ta_t_5
+        M_ta_zz += -rps_M_ta_t_9
+        M_ta_rps_xy += -rps_M_ta_t
+        M_ta_rps_xz += rps_M_ta_t_2
+        M_ta_rps_yx += rps_M_ta_t_3
+        M_ta_rps_yz += rps_M_ta_t_6
+        M_ta_rps_zx += rps_M_ta_t_7
+        M_ta_rps_zy += rps_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rps_xx += rps_M_aa_t
         M_aa_rps_xy += rps_M_aa_t_2
-        M_aa_rps_xz += rps_M_aa_t_3
-        M_aa_t += rps_M_aa_t_4
+        M_aa_t += rps_M_aa_t_3
+        M_aa_t_2 += rps_M_aa_t_4
         M_aa_rps_yz += rps_M_aa_t_5
         M_aa_rps_zz += rps_M_aa_t_6
     # (M_tt) translational block of M
@@ -2363,6 +2356,7 @@ def _run_M(m, X):
     M_tt_yy = platform_mass - M_tt_t_4
     M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
+    M_ta_xx = -M_ta_yy - M_ta_zz
     M_ta_xy = M_ta_rps_xy + h_star_z
     M_ta_xz = M_ta_rps_xz - h_star_y
     M_ta_yx = M_ta_rps_yx - h_star_z
@@ -2372,8 +2366,8 @@ def _run_M(m, X):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_rps_xx
     M_aa_xy = J_star_xy + M_aa_rps_xy
-    M_aa_xz = J_star_xz + M_aa_rps_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_rps_yz
     M_aa_zz = J_star_zz + M_aa_rps_zz
     # (M_tt) translational block of M
@@ -2418,14 +2412,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 345 mul, 258 add, 3 div, 3 sqrt, 0 trig
+# Z: 342 mul, 258 add, 3 div, 3 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2488,15 +2482,14 @@ def _run_Z(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2885,7 +2878,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 405 mul, 315 add, 3 div, 3 sqrt, 0 trig
+# required: 396 mul, 309 add, 3 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2984,9 +2977,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
@@ -3010,27 +3000,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_rps_x, R_a_rps_y, R_a_rps_z = [0.0] * 6
     for leg, k in legs[0]:
         (

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -1170,8 +1181,8 @@ typedef struct {
         ups_S_ddot_t_3, ups_S_ddot_in_axes2_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2,
         ups_W_2_in_axes2_yz, ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy,
         ups_bias_in_axes2_z, ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4,
-        ups_c_t, ups_c_t_2, ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_xy, ups_Q_xz,
-        ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_U_x, ups_U_y, ups_U_z, ups_S_ddot_in_axes2_y,
+        ups_c_t, ups_c_t_2, ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_yy, ups_Q_zz,
+        ups_Q_xy, ups_Q_xz, ups_Q_yz, ups_U_x, ups_U_y, ups_U_z, ups_S_ddot_in_axes2_y,
         ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
@@ -1353,16 +1364,15 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
         v->axis_z_ups_axes2_z*ups_Q_t_2;
     const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
     v->ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_zz = -ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_xx - v->ups_Q_yy;
     v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
         v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
     v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
-    v->ups_Q_yy = -2*ups_Q_t_10;
     v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_z*ups_Q_t_5 + v->axis_z_ups_axes2_z*ups_Q_t_8;
-    v->ups_Q_zz = -2*ups_Q_t_11;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
@@ -1467,6 +1477,21 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
+INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
+    real *H, status_flags *t)
+{
+    H[i*w + k] = o[0*count + at];
+    H[(NU + i)*w + k] = o[1*count + at];
+    H[(2*NU + i)*w + k] = o[2*count + at];
+    t->singular[k] += o[3*count + at];
+    t->total[k] += o[4*count + at];
+}
+
+INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1497,16 +1522,6 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void dynamics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
-    *o, real *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -1550,13 +1565,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[9] = {0};
-    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real sums[9] CLEARED;
+    real terms_ups[9*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        dynamics_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -1575,7 +1590,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            dynamics_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1600,11 +1615,6 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
-}
-
-INLINE void M_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
@@ -1635,13 +1645,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real sums[6] CLEARED;
+    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        M_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -1660,7 +1670,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_ups(m, LANES, i, k, k, LANES, 1, X, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1685,11 +1695,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void Z_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
@@ -1709,13 +1714,13 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real sums[3] CLEARED;
+    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        Z_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -1734,7 +1739,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, X, V, sums, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_ups(k, k, LANES, o_ups, t);
+            any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -1757,24 +1762,14 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
-INLINE void H_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
-    *H, status_flags *t)
-{
-    H[i*w + k] = o[0*count + at];
-    H[(NU + i)*w + k] = o[1*count + at];
-    H[(2*NU + i)*w + k] = o[2*count + at];
-    t->singular[k] += o[3*count + at];
-    t->total[k] += o[4*count + at];
-}
-
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, o_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        H_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
+        any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
 }
 
@@ -1787,7 +1782,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
             H_legs_ups(m, LANES, i, k, k, LANES, X, o_ups);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            H_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
+            any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
 }
@@ -1871,10 +1866,13 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[3] = {0}, sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        required_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
+    real s[3] CLEARED, sums[3] CLEARED;
+    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups,
+                o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
@@ -1941,7 +1939,7 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, o_ups);
     }
@@ -1996,7 +1994,7 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, V, o_ups);
     }
@@ -2055,7 +2053,7 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     }
@@ -2136,9 +2134,11 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        legs_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, V, A, o_ups);
+    real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), X, V, A, o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         legs_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, leg_force, actuator, t);
@@ -2180,11 +2180,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_ups(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -2197,13 +2192,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] = {0}, sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
-    for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
-        potential_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
+    real s[1] CLEARED, sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
+            potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
-        potential_place_ups(0, i, LEGS(LEGS_OF_ups), o_ups, t);
+        any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
@@ -2280,8 +2277,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real sums[1] CLEARED;
+    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     condition_before(m, 1, 0, lengths, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
@@ -2529,7 +2526,7 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0}, unsure_tau[1] = {0},
+    real required[NV] CLEARED, H[NV*NU] CLEARED, subtract_1[NV] CLEARED, unsure_tau[1] = {0},
         work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
@@ -2578,8 +2575,8 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, times_1[NV] = {0}, add_1[NV] = {0},
-        subtract_1[NV] = {0}, unsure_A[1] = {0}, work[NV*PADDED(NV)];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED,
+        subtract_1[NV] CLEARED, unsure_A[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2648,7 +2645,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
 {
     static const real no_wrench[NW] = {0};
     static const size_t places_forces[] = {0, 1, 2};
-    real solve_1[NV] = {0}, leg_force[3*NL] = {0}, actuator[9] = {0}, forces[NL*NL] = {0};
+    real solve_1[NV] = {0}, leg_force[3*NL] CLEARED, actuator[9] CLEARED, forces[NL*NL] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2665,7 +2662,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
 int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2683,7 +2680,7 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
 
 int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, real *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, reach[NL] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, reach[NL] CLEARED, sigma[NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2703,8 +2700,8 @@ int tripod_3ups_condition(const prepared *m, const real *X, real *sigma_out, rea
 int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_out, real
     *isotropy_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2725,8 +2722,8 @@ int tripod_3ups_manipulability(const prepared *m, const real *X, real *measure_o
 int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *actuators_out, real
     *legs_out)
 {
-    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
-        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL] CLEARED,
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2747,7 +2744,7 @@ int tripod_3ups_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, residual[NU] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -2832,7 +2829,7 @@ int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -2845,7 +2842,7 @@ int tripod_3ups_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2857,7 +2854,7 @@ int tripod_3ups_momentum(const prepared *m, const real *X, const real *V, real *
 int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2872,7 +2869,7 @@ int tripod_3ups_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2886,7 +2883,7 @@ int tripod_3ups_within_limits(const prepared *m, const real *X, real *within_out
 
 int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -2897,7 +2894,7 @@ int tripod_3ups_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -2909,7 +2906,7 @@ int tripod_3ups_actuator_rates(const prepared *m, const real *X, const real *V, 
 int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -2921,7 +2918,7 @@ int tripod_3ups_actuator_accelerations(const prepared *m, const real *X, const r
 int tripod_3ups_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -2933,7 +2930,7 @@ int tripod_3ups_power(const prepared *m, const real *X, const real *V, const rea
 
 int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real X_moved[NQ] = {0};
+    real X_moved[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -2945,7 +2942,7 @@ int tripod_3ups_retract(const real *X, const real *step, real *X_moved_out)
 
 int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
 {
-    real step[NV] = {0};
+    real step[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -2957,7 +2954,7 @@ int tripod_3ups_difference(const real *X0, const real *X1, real *step_out)
 
 int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real subtract_1[NQ] = {0}, scale_1[NQ] = {0}, X[NQ] = {0};
+    real subtract_1[NQ] CLEARED, scale_1[NQ] CLEARED, X[NQ] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

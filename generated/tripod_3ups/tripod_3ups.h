@@ -128,7 +128,7 @@ extern const char *const tripod_3ups_ACTUATOR_NAMES[TRIPOD_3UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *model);
 
-/* Inertia matrix M. 267 mul, 177 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 258 mul, 183 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3ups_M(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *M);
 size_t tripod_3ups_M_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
     tripod_3ups_real *M, int *status);
@@ -168,7 +168,7 @@ size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, siz
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 507 mul, 354 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 498 mul, 360 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H);
@@ -186,7 +186,7 @@ size_t tripod_3ups_inverse_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
     tripod_3ups_real *wrench, tripod_3ups_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 507 mul, 354 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 498 mul, 360 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int tripod_3ups_forward_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
@@ -265,7 +265,7 @@ int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_re
 size_t tripod_3ups_dissipation_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *dissipation, int *status);
 
-/* Generalised momentum M V. 267 mul, 177 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 258 mul, 183 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *momentum);

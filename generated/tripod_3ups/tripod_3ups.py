@@ -1652,7 +1652,7 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 507 mul, 354 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 498 mul, 360 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1877,6 +1877,9 @@ def _run_dynamics(m, X, V):
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
         ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
         ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_zz = -ups_Q_xx - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
         ups_Q_xy = (
         axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
             - axis_z_ups_axes2_y*ups_Q_t_6
@@ -1885,14 +1888,10 @@ def _run_dynamics(m, X, V):
         axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
         axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
         axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
@@ -1951,7 +1950,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 267 mul, 177 add, 6 div, 6 sqrt, 0 trig
+# M: 258 mul, 183 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2066,6 +2065,9 @@ def _run_M(m, X):
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
         ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
         ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_zz = -ups_Q_xx - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
         ups_Q_xy = (
         axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
             - axis_z_ups_axes2_y*ups_Q_t_6
@@ -2074,14 +2076,10 @@ def _run_M(m, X):
         axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
-        ups_Q_yy = -2.0*ups_Q_t_10
         ups_Q_yz = (
         axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
-        ups_Q_zz = -2.0*ups_Q_t_11
         ok = (
         ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
             > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)

@@ -54,6 +54,17 @@ enum {
     ((n) < 3 || LANES < 2 || sizeof(real) > sizeof(double) || VECTOR < 2*sizeof(real) ? (size_t)(n) \
         : LANES < 4 || VECTOR < 4*sizeof(real) ? WHOLE((size_t)2, n) : WHOLE((size_t)4, n))
 
+/* Legs that one vector holds.  Vectors of 64 bytes leave fewer units to what one state solves. */
+#define BESIDE(n) (VECTOR < 32 || LEGS(n)*sizeof(real)%VECTOR != 0 ? LEGS(n) : VECTOR/sizeof(real))
+
+/* The legs fill their buffers, which gcc's analyzer does not see; clearing them first takes time
+   that counts where the legs are done in a vector or two. */
+#if VECTOR < 32
+#define CLEARED = {0}
+#else
+#define CLEARED
+#endif
+
 #define FILLED(n) WHOLE((size_t)4, n)  /* places of n legs in the model; copies of the first fill them up */
 
 /* Sizes: of X, V, tau, lambda, wrench and q, and numbers of legs. */
@@ -74,8 +85,8 @@ enum {
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Lengths, or squares of them, that are not larger count as zero. */
 #define LEAST_1 (TOLERANCE*TOLERANCE*R(0.6400000000000001))
-#define LEAST_2 (TOLERANCE*R(0.6400000000000001))
-#define LEAST_3 (TOLERANCE*R(0.8))
+#define LEAST_2 (TOLERANCE*R(0.8))
+#define LEAST_3 (TOLERANCE*R(0.6400000000000001))
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
 
@@ -612,6 +623,8 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real J_star_t_6 = R(0.5)*J_star_t_5;
     const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
+    const real J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy +
+        J_star_in_platform_zz;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
@@ -628,6 +641,7 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     KEEP(J_star_in_platform_zz);
     KEEP(J_star_t_6);
     KEEP(J_star_t_8);
+    KEEP(J_star_t_9);
     KEEP(Z_p_t);
     KEEP(Z_p_t_2);
     KEEP(Z_p_t_3);
@@ -1527,8 +1541,8 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 typedef struct {
     real W_p_t_4, W_p_xy, W_p_xz, W_p_t_5, W_p_yz, W_p_t_6, quaternion_scale, R_xx, R_xy, R_xz, R_yx,
-        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_xy, J_star_xz,
-        J_star_yy, J_star_yz, J_star_zz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
+        R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y, h_star_z, J_star_xx, J_star_yy, J_star_zz,
+        J_star_xy, J_star_xz, J_star_yz, B_p_xy, B_p_xz, B_p_yx, B_p_yz, B_p_zx, B_p_zy, Z_p_x, Z_p_y,
         Z_p_z, Z_q_x, Z_q_y, Z_q_z;
 } values;
 
@@ -1596,18 +1610,17 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
     const real J_star_t_4 = m->J_star_t_8*v->R_xz - m->J_star_in_platform_xz*v->R_xx;
     const real J_star_t_5 = m->J_star_t_8*v->R_yz - m->J_star_in_platform_xz*v->R_yx;
     const real J_star_t_7 = m->J_star_t_8*v->R_zz - m->J_star_in_platform_xz*v->R_zx;
-    const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
-    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_t_10 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    v->J_star_xx = m->J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_t_11 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_11;
+    v->J_star_zz = m->J_star_t_9 - v->J_star_xx - v->J_star_yy;
     v->J_star_xy = J_star_t*v->R_yy - J_star_t_5*v->R_xz + J_star_t_2*v->R_xy -
         J_star_t_4*v->R_yz;
     v->J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
         J_star_t_7*v->R_xz;
-    const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
-    v->J_star_yy = m->J_star_in_platform_xx + 2*J_star_t_10;
     v->J_star_yz = J_star_t_2*v->R_zy - J_star_t_5*v->R_zz + J_star_t_3*v->R_yy -
         J_star_t_7*v->R_yz;
-    const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
-    v->J_star_zz = m->J_star_in_platform_xx + 2*J_star_t_11;
 }
 
 INLINE void stage_A_V(size_t w, size_t k, const real *A, values *v)
@@ -1639,7 +1652,7 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_t = v->J_star_xx*omega_x + v->J_star_xy*omega_y + v->J_star_xz*omega_z;
     const real Z_q_t_2 = v->J_star_yy*omega_y + v->J_star_xy*omega_x + v->J_star_yz*omega_z;
-    const real Z_q_t_3 = v->J_star_zz*omega_z + v->J_star_xz*omega_x + v->J_star_yz*omega_y;
+    const real Z_q_t_3 = v->J_star_xz*omega_x + v->J_star_yz*omega_y + v->J_star_zz*omega_z;
     v->Z_q_x = m->gravity_y*v->h_star_z - m->gravity_z*v->h_star_y + Z_q_t_3*omega_y -
         Z_q_t_2*omega_z;
     v->Z_q_y = m->gravity_z*v->h_star_x - m->gravity_x*v->h_star_z + Z_q_t*omega_z -
@@ -1649,25 +1662,24 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real upu_q_x, upu_q_y, upu_q_z, upu_root_1_t, upu_c_1, upu_s_1, upu_q_3_t, upu_q_3, inv_upu_q_3,
-        upu_c_2, upu_e_1_in_axes2_x, axis_z_upu_axes2_x, axis_z_upu_axes2_y, axis_z_upu_axes2_z,
-        axis_y_upu_axes2_x, axis_y_upu_axes2_y, axis_y_upu_axes2_z, axis_x_upu_axes2_x,
-        axis_x_upu_axes2_y, axis_x_upu_axes2_z, upu_n_m1_in_axes2_y, upu_end_p1_in_axes2_y,
-        upu_n_m1_x, upu_n_m1_y, upu_n_m1_z, upu_volume_c_t, upu_n_c_in_axes2_z, upu_n_c_x, upu_n_c_y,
-        upu_n_c_z, upu_w_1_t, upu_w_1_in_axes2_z, upu_end_p1_in_axes2_z, upu_g_in_axes2_z,
-        upu_g_in_axes2_x, upu_g_in_axes2_y, upu_mu_2_t, upu_mu_2_t_2, upu_mu_2_t_3, upu_H_a_3_x,
-        upu_H_a_3_y, upu_H_a_3_z, upu_Hk_a_1_x, upu_Hk_a_1_y, upu_Hk_a_1_z, upu_etad_1_t,
-        upu_S_dot_in_axes2_x, upu_qd_2, upu_omega_1_in_axes2_x, upu_omega_1_in_axes2_y,
-        upu_W_2_in_axes2_yz, upu_W_2_in_axes2_xz, upu_W_2_t, upu_u_1_x, upu_u_1_y, upu_u_1_z,
-        upu_bias_t_2, upu_rel_o_in_axes2_z, upu_nu_1, upu_qdd_2_t, upu_qd_1_2,
-        upu_omega_1_in_axes2_x_2, upu_W_2_in_axes2_yz_2, upu_W_2_in_axes2_xz_2, upu_W_2_t_2,
-        upu_W_2_t_3, upu_W_2_in_axes2_xy_2, upu_bias_t_3, upu_bias_in_axes2_z_2, upu_nu_1_2,
-        upu_S_ddot_in_axes2_x, upu_qdd_1_t, upu_qdd_2_t_2, upu_qdd_2_t_3, upu_qdd_2, upu_Q_xx,
-        upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12,
-        upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15, upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18,
+    real upu_q_x, upu_q_y, upu_q_z, upu_root_1_t, upu_root_1, inv_upu_root_1, upu_c_1, upu_s_1,
+        upu_q_3_t, upu_q_3, inv_upu_q_3, upu_c_2, upu_e_1_in_axes2_x, axis_z_upu_axes2_x,
+        axis_z_upu_axes2_y, axis_z_upu_axes2_z, axis_y_upu_axes2_x, axis_y_upu_axes2_y,
+        axis_y_upu_axes2_z, axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z,
+        upu_n_m1_in_axes2_y, upu_end_p1_in_axes2_y, upu_n_m1_x, upu_n_m1_y, upu_n_m1_z,
+        upu_volume_c_t, upu_n_c_in_axes2_z, upu_n_c_x, upu_n_c_y, upu_n_c_z, upu_end_p1_in_axes2_z,
+        upu_g_in_axes2_z, upu_g_in_axes2_x, upu_g_in_axes2_y, upu_mu_2_t_4, upu_mu_2_t_5,
+        upu_mu_2_t_6, upu_H_a_3_x, upu_H_a_3_y, upu_H_a_3_z, upu_Hk_a_1_x, upu_Hk_a_1_y, upu_Hk_a_1_z,
+        upu_S_dot_in_axes2_x, upu_qd_1, upu_qd_2, upu_omega_1_in_axes2_x, upu_omega_1_in_axes2_y,
+        upu_W_2_in_axes2_yz, upu_W_2_in_axes2_xz, upu_W_2_t_3, upu_W_2_in_axes2_xy, upu_u_1_x,
+        upu_u_1_y, upu_u_1_z, upu_bias_t_2, upu_bias_in_axes2_z, upu_rel_o_in_axes2_z, upu_qdd_2_t,
+        upu_f_3_t_2, upu_f_3_t_3, upu_f_3_t_4, upu_mu_2_t, upu_mu_2_t_2, upu_mu_2_t_3,
+        upu_S_ddot_in_axes2_x, upu_qdd_1, upu_qdd_2_t_2, upu_qdd_2_t_3, upu_qdd_2, upu_Q_xx, upu_Q_yy,
+        upu_Q_zz, upu_Q_xy, upu_Q_xz, upu_Q_yz, upu_M_ta_t_3, upu_M_ta_t_4, upu_M_ta_t_5,
+        upu_M_ta_t_6, upu_M_ta_t_8, upu_M_ta_t_9, upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12,
         upu_M_aa_t, upu_M_aa_t_2, upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_x,
-        upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3, upu_c_x, upu_c_y, upu_c_z, upu_c_m_x,
-        upu_c_m_y, upu_c_m_z;
+        upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3, upu_gamma_c1, upu_c_x, upu_c_y,
+        upu_c_z;
 } values_upu;
 
 INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1703,18 +1715,18 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         upu_S_y*m->upu_base_frame_yz[i] + upu_S_z*m->upu_base_frame_zz[i];
     /* (upu-root_1) amplitude, the length across axis 1, with the sign of the branch */
     v->upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y;
-    const real upu_root_1 = m->upu_branch_1[i]*root(v->upu_root_1_t);
+    v->upu_root_1 = m->upu_branch_1[i]*root(v->upu_root_1_t);
     /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_upu_root_1 = 1/upu_root_1;
-    v->upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x;
+    v->inv_upu_root_1 = 1/v->upu_root_1;
+    v->upu_c_1 = v->inv_upu_root_1*upu_S_in_turn1_x;
     /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-    v->upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y;
+    v->upu_s_1 = v->inv_upu_root_1*upu_S_in_turn1_y;
     /* (upu-q_3) displacement of joint 3 */
     v->upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + v->upu_root_1_t;
     v->upu_q_3 = m->upu_branch_2[i]*root(v->upu_q_3_t);
     /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
     v->inv_upu_q_3 = 1/v->upu_q_3;
-    v->upu_c_2 = v->inv_upu_q_3*upu_root_1;
+    v->upu_c_2 = v->inv_upu_q_3*v->upu_root_1;
     /* (upu-q_2) displacement of joint 2 */
     v->upu_e_1_in_axes2_x = v->inv_upu_q_3*upu_S_in_turn1_z;
     /* (upu-S_dot) velocity of the connection point */
@@ -1763,8 +1775,6 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real upu_n_m1_t_4 = v->upu_c_1*upu_n_m1_t + upu_n_m1_t_2*v->upu_s_1;
     v->upu_n_m1_in_axes2_y = v->upu_c_2*upu_n_m1_t_4 + v->upu_e_1_in_axes2_x*upu_n_m1_t_3;
     v->upu_end_p1_in_axes2_y = v->upu_e_1_in_axes2_x*upu_n_m1_t_4 - v->upu_c_2*upu_n_m1_t_3;
-    const real upu_n_m1_t_5 = v->upu_c_2*v->upu_n_m1_in_axes2_y +
-        v->upu_e_1_in_axes2_x*v->upu_end_p1_in_axes2_y;
     v->upu_n_m1_x = v->axis_y_upu_axes2_x*v->upu_n_m1_in_axes2_y -
         v->axis_x_upu_axes2_x*v->upu_end_p1_in_axes2_y;
     v->upu_n_m1_y = v->axis_y_upu_axes2_y*v->upu_n_m1_in_axes2_y -
@@ -1772,15 +1782,13 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->upu_n_m1_z = v->axis_y_upu_axes2_z*v->upu_n_m1_in_axes2_y -
         v->axis_x_upu_axes2_z*v->upu_end_p1_in_axes2_y;
     /* (upu-volume_c) triple product of the velocity vectors */
-    v->upu_volume_c_t = v->upu_q_3*upu_root_1;
+    v->upu_volume_c_t = v->upu_q_3*v->upu_root_1;
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    v->upu_n_c_in_axes2_z = upu_n_m1_t_5*v->upu_q_3/v->upu_volume_c_t;
+    v->upu_n_c_in_axes2_z = v->upu_q_3*(v->upu_c_2*v->upu_n_m1_in_axes2_y +
+        v->upu_e_1_in_axes2_x*v->upu_end_p1_in_axes2_y)/v->upu_volume_c_t;
     v->upu_n_c_x = v->axis_z_upu_axes2_x*v->upu_n_c_in_axes2_z;
     v->upu_n_c_y = v->axis_z_upu_axes2_y*v->upu_n_c_in_axes2_z;
     v->upu_n_c_z = v->axis_z_upu_axes2_z*v->upu_n_c_in_axes2_z;
-    /* (upu-w_1) force part of reciprocal wrench 1 */
-    v->upu_w_1_t = upu_root_1 + v->upu_n_c_in_axes2_z*upu_n_m1_t_5;
-    v->upu_w_1_in_axes2_z = 1/v->upu_w_1_t;
     /* (upu-nd_m1) rate of moment direction 1 */
     v->upu_end_p1_in_axes2_z = v->upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*v->upu_s_1;
     /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
@@ -1791,11 +1799,11 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->upu_g_in_axes2_y = upu_acc_3_t_4*v->upu_e_1_in_axes2_x -
         m->upu_acc_3_t_3[i]*v->upu_c_2;
     /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    v->upu_mu_2_t = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
+    v->upu_mu_2_t_4 = v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_z[i] +
         v->upu_g_in_axes2_y*m->upu_h_2_in_spec2_y[i];
-    v->upu_mu_2_t_2 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] -
+    v->upu_mu_2_t_5 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_y[i] -
         v->upu_g_in_axes2_z*m->upu_h_2_in_spec2_x[i];
-    v->upu_mu_2_t_3 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] +
+    v->upu_mu_2_t_6 = v->upu_g_in_axes2_x*m->upu_h_2_in_spec2_z[i] +
         v->upu_g_in_axes2_y*m->upu_h_2_in_spec2_x[i];
     /* (upu-H_a_3) moment of the column's unit force about the platform origin */
     v->upu_H_a_3_x = v->axis_x_upu_axes2_z*v->upu_q_y - v->axis_x_upu_axes2_y*v->upu_q_z;
@@ -1807,19 +1815,8 @@ INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->upu_Hk_a_1_z = v->upu_n_m1_z + v->upu_n_c_y*v->upu_q_x - v->upu_n_c_x*v->upu_q_y;
 }
 
-INLINE void stage_upu_A_X(size_t w, size_t j, const real *A, values_upu *v)
-{
-    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real alpha_x = A[3*w + j];
-    const real alpha_y = A[4*w + j];
-    const real alpha_z = A[5*w + j];
-    v->upu_etad_1_t = v->upu_end_p1_in_axes2_y*(alpha_x*v->axis_x_upu_axes2_x +
-        alpha_y*v->axis_x_upu_axes2_y + alpha_z*v->axis_x_upu_axes2_z) -
-        v->upu_n_m1_in_axes2_y*(alpha_x*v->axis_y_upu_axes2_x + alpha_y*v->axis_y_upu_axes2_y
-        + alpha_z*v->axis_y_upu_axes2_z);
-}
-
-INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
+INLINE void stage_upu_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_upu *v)
 {
     /* (upu-S_dot) velocity of the connection point */
     const real omega_y = V[4*w + j];
@@ -1836,28 +1833,22 @@ INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
     const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
     v->upu_S_dot_in_axes2_x = v->axis_x_upu_axes2_x*upu_S_dot_x +
         v->axis_x_upu_axes2_y*upu_S_dot_y + v->axis_x_upu_axes2_z*upu_S_dot_z;
-    const real upu_S_dot_in_axes2_z = v->axis_z_upu_axes2_x*upu_S_dot_x +
-        v->axis_z_upu_axes2_y*upu_S_dot_y + v->axis_z_upu_axes2_z*upu_S_dot_z;
-    /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-    const real upu_eta_1 = omega_x*v->upu_n_m1_x + omega_y*v->upu_n_m1_y +
-        omega_z*v->upu_n_m1_z;
     /* (upu-qd_1) rate of joint 1 */
-    const real upu_qd_1 = v->upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z -
-        upu_eta_1*v->upu_n_c_in_axes2_z);
-    const real upu_omega_in_axes2_x = v->axis_x_upu_axes2_x*omega_x +
-        v->axis_x_upu_axes2_y*omega_y + v->axis_x_upu_axes2_z*omega_z;
-    const real upu_omega_in_axes2_y = v->axis_y_upu_axes2_x*omega_x +
-        v->axis_y_upu_axes2_y*omega_y + v->axis_y_upu_axes2_z*omega_z;
+    v->upu_qd_1 = v->inv_upu_root_1*(v->axis_z_upu_axes2_x*upu_S_dot_x +
+        v->axis_z_upu_axes2_y*upu_S_dot_y + v->axis_z_upu_axes2_z*upu_S_dot_z);
     /* (upu-qd_2) rate of joint 2 */
     v->upu_qd_2 = v->inv_upu_q_3*(v->axis_y_upu_axes2_x*upu_S_dot_x +
         v->axis_y_upu_axes2_y*upu_S_dot_y + v->axis_y_upu_axes2_z*upu_S_dot_z);
     /* (upu-omega_1) angular velocity of link 1 */
-    v->upu_omega_1_in_axes2_x = v->upu_e_1_in_axes2_x*upu_qd_1;
-    v->upu_omega_1_in_axes2_y = -v->upu_c_2*upu_qd_1;
+    v->upu_omega_1_in_axes2_x = v->upu_e_1_in_axes2_x*v->upu_qd_1;
+    v->upu_omega_1_in_axes2_y = -v->upu_c_2*v->upu_qd_1;
     /* (upu-W_2) centripetal tensor of link 2 */
     v->upu_W_2_in_axes2_yz = v->upu_omega_1_in_axes2_y*v->upu_qd_2;
     v->upu_W_2_in_axes2_xz = v->upu_omega_1_in_axes2_x*v->upu_qd_2;
-    v->upu_W_2_t = v->upu_qd_2*v->upu_qd_2;
+    const real upu_W_2_t = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
+    const real upu_W_2_t_2 = v->upu_qd_2*v->upu_qd_2;
+    v->upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2;
+    v->upu_W_2_in_axes2_xy = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_y;
     /* (upu-u_1) centripetal acceleration of the connection point */
     v->upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
     v->upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
@@ -1865,65 +1856,23 @@ INLINE void stage_upu_V_X(size_t w, size_t j, const real *V, values_upu *v)
     /* (upu-bias) acceleration of the connection point at zero joint accelerations */
     const real upu_bias_t = 2*v->upu_S_dot_in_axes2_x;
     v->upu_bias_t_2 = upu_bias_t*v->upu_omega_1_in_axes2_y;
-    const real upu_bias_in_axes2_z = 2*v->upu_W_2_in_axes2_xz*v->upu_q_3 - v->upu_bias_t_2;
+    v->upu_bias_in_axes2_z = 2*v->upu_W_2_in_axes2_xz*v->upu_q_3 - v->upu_bias_t_2;
     /* (upu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     v->upu_rel_o_in_axes2_z = v->axis_z_upu_axes2_x*v->upu_u_1_x +
         v->axis_z_upu_axes2_y*v->upu_u_1_y + v->axis_z_upu_axes2_z*v->upu_u_1_z -
-        upu_bias_in_axes2_z;
-    /* (upu-nd_m1) rate of moment direction 1 */
-    const real upu_omega_in_axes2_z = v->axis_z_upu_axes2_x*omega_x +
-        v->axis_z_upu_axes2_y*omega_y + v->axis_z_upu_axes2_z*omega_z;
-    const real upu_nd_m1_t = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
-        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z;
-    const real upu_nd_m1_t_2 = v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
-        v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x;
-    const real upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 -
-        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = upu_nd_m1_t -
-        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y +
-        v->upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
-    const real upu_nu_1_t_2 = upu_omega_in_axes2_z - v->upu_qd_2;
-    const real upu_nu_1_t_3 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
-        v->upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(v->upu_omega_1_in_axes2_x -
-        upu_omega_in_axes2_x) -
-        upu_nu_1_t_2*(-v->upu_end_p1_in_axes2_y*v->upu_omega_1_in_axes2_y -
-        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x);
-    v->upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3;
+        v->upu_bias_in_axes2_z;
     /* (upu-qdd_2) acceleration of joint 2 */
     v->upu_qdd_2_t = upu_bias_t*v->upu_qd_2;
-    /* (upu-qd_1) */
-    v->upu_qd_1_2 = v->upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
-        v->upu_n_c_in_axes2_z*(v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
-        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_y));
-    /* (upu-omega_1) */
-    v->upu_omega_1_in_axes2_x_2 = v->upu_e_1_in_axes2_x*v->upu_qd_1_2;
-    const real upu_omega_1_in_axes2_y_2 = -v->upu_c_2*v->upu_qd_1_2;
-    /* (upu-W_2) */
-    v->upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*v->upu_qd_2;
-    v->upu_W_2_in_axes2_xz_2 = v->upu_omega_1_in_axes2_x_2*v->upu_qd_2;
-    v->upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2;
-    v->upu_W_2_t_3 = v->upu_W_2_t + v->upu_W_2_t_2;
-    v->upu_W_2_in_axes2_xy_2 = v->upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2;
-    /* (upu-bias) */
-    v->upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2;
-    v->upu_bias_in_axes2_z_2 = 2*v->upu_W_2_in_axes2_xz_2*v->upu_q_3 - v->upu_bias_t_3;
-    /* (upu-nd_m1) */
-    const real upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 -
-        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x_2;
-    const real upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t -
-        v->upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2;
-    /* (upu-nu_1) */
-    const real upu_nu_1_t_4 = -v->upu_W_2_in_axes2_xz_2*v->upu_n_m1_in_axes2_y -
-        v->upu_W_2_in_axes2_yz_2*v->upu_end_p1_in_axes2_y;
-    const real upu_nu_1_t_5 = upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y -
-        upu_omega_1_in_axes2_y_2) - upu_nd_m1_in_axes2_x_2*(v->upu_omega_1_in_axes2_x_2 -
-        upu_omega_in_axes2_x) -
-        upu_nu_1_t_2*(-v->upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
-        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x_2);
-    v->upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4;
+    /* (upu-f_3) inertia force of link 3 less its weight */
+    const real upu_f_3_t = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
+    v->upu_f_3_t_2 = v->upu_W_2_t_3*m->upu_h_3_in_spec2_x[i];
+    v->upu_f_3_t_3 = m->upu_h_3_in_spec2_z[i]*(upu_f_3_t + upu_W_2_t_2);
+    v->upu_f_3_t_4 = m->upu_h_3_in_spec2_y[i]*(upu_W_2_t + upu_f_3_t);
+    /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    v->upu_mu_2_t = m->upu_J_group_2_in_axes2_yz[i]*(upu_W_2_t - upu_W_2_t_2);
+    v->upu_mu_2_t_2 = m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_t - upu_W_2_t_2);
+    v->upu_mu_2_t_3 = m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t - upu_W_2_t);
 }
 
 INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *s, const real *A, values_upu *v)
@@ -1952,151 +1901,57 @@ INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     /* (upu-rel) acceleration of the connection point left to the joint accelerations */
     const real upu_rel_in_axes2_z = v->axis_z_upu_axes2_x*upu_S_ddot_x +
         v->axis_z_upu_axes2_y*upu_S_ddot_y + v->axis_z_upu_axes2_z*upu_S_ddot_z -
-        v->upu_bias_in_axes2_z_2;
-    /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-    const real upu_etad_1 = v->upu_nu_1_2 - v->upu_etad_1_t;
+        v->upu_bias_in_axes2_z;
     /* (upu-qdd_1) acceleration of joint 1 */
-    v->upu_qdd_1_t = v->upu_w_1_in_axes2_z*(upu_etad_1*v->upu_n_c_in_axes2_z -
-        upu_rel_in_axes2_z);
+    v->upu_qdd_1 = v->inv_upu_root_1*upu_rel_in_axes2_z;
     /* (upu-qdd_2) acceleration of joint 2 */
     v->upu_qdd_2_t_2 = v->axis_y_upu_axes2_x*upu_S_ddot_x + v->axis_y_upu_axes2_y*upu_S_ddot_y
         + v->axis_y_upu_axes2_z*upu_S_ddot_z - v->upu_qdd_2_t;
     v->upu_qdd_2_t_3 = v->inv_upu_q_3*v->upu_qdd_2_t_2;
-    v->upu_qdd_2 = v->upu_qdd_2_t_3 - v->upu_W_2_in_axes2_xy_2;
+    v->upu_qdd_2 = v->upu_qdd_2_t_3 - v->upu_W_2_in_axes2_xy;
 }
 
 INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
 {
-    /* (upu-m1_w_1) moment part 1 of reciprocal wrench 1 */
-    const real upu_m1_w_1_t = v->upu_n_c_in_axes2_z*v->upu_w_1_in_axes2_z;
-    /* (upu-o_1) moment part of reciprocal wrench 1 */
-    const real upu_o_1_in_axes2_x = v->upu_end_p1_in_axes2_y*upu_m1_w_1_t;
-    const real upu_o_1_t = upu_m1_w_1_t*v->upu_n_m1_in_axes2_y;
-    /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real upu_dalpha_alpha_1_in_axes2_xx = v->upu_e_1_in_axes2_x*upu_o_1_in_axes2_x;
-    const real upu_dalpha_alpha_1_t = v->upu_e_1_in_axes2_x*upu_o_1_t;
-    const real upu_dalpha_alpha_1_t_2 = v->upu_c_2*upu_o_1_in_axes2_x;
-    const real upu_dalpha_alpha_1_in_axes2_yy = v->upu_c_2*upu_o_1_t;
     /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real upu_d_alpha_1_in_axes2_xz = v->upu_e_1_in_axes2_x*v->upu_w_1_in_axes2_z;
-    const real upu_d_alpha_1_t = v->upu_c_2*v->upu_w_1_in_axes2_z;
-    /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-       link 3, less gravity */
-    const real upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*v->upu_q_3;
-    const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*v->upu_q_3;
-    /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-       3, less gravity */
-    const real upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*v->upu_q_3;
-    /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real upu_dalpha_phi_3_in_axes2_xy =
-        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_y[i];
+    const real upu_d_alpha_1_in_axes2_xz = v->inv_upu_root_1*v->upu_e_1_in_axes2_x;
     /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
        about its reference point */
     const real upu_d_phi_3_in_axes2_xy = v->inv_upu_q_3*m->upu_h_3_in_spec2_z[i];
-    /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real upu_dalpha_Gamma_1_in_axes2_x =
-        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_in_axes2_xx
-        - m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_acc_3_in_axes2_zx*m->upu_h_3_in_spec2_z[i]) -
-        v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_xx -
-        m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_acc_3_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        v->upu_q_3*(upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_x[i] -
-        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_z[i] +
-        upu_dalpha_acc_3_in_axes2_zx*m->upu_link3_mass[i]));
-    const real upu_dalpha_Gamma_1_in_axes2_y =
-        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_in_axes2_yy
-        - m->upu_J_group_2_in_axes2_xx[i]*upu_dalpha_alpha_1_t +
-        upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_z[i]) -
-        v->upu_c_2*(m->upu_J_group_2_in_axes2_yy[i]*upu_dalpha_alpha_1_in_axes2_yy -
-        m->upu_J_group_2_in_axes2_xy[i]*upu_dalpha_alpha_1_t +
-        upu_dalpha_acc_3_t*m->upu_h_3_in_spec2_x[i] -
-        v->upu_q_3*(upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_z[i] -
-        upu_dalpha_alpha_1_in_axes2_yy*m->upu_h_3_in_spec2_x[i] -
-        upu_dalpha_acc_3_t*m->upu_link3_mass[i]));
+    const real upu_d_phi_3_in_axes2_yy = v->inv_upu_q_3*m->upu_h_3_in_spec2_x[i];
     /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real upu_d_Gamma_1_in_axes2_z =
         v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_d_alpha_1_in_axes2_xz -
-        m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_t -
-        upu_d_acc_3_in_axes2_zz*m->upu_h_3_in_spec2_z[i]) -
+        m->upu_h_3_in_spec2_z[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_xy[i]) -
         v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_in_axes2_xz -
-        m->upu_J_group_2_in_axes2_yy[i]*upu_d_alpha_1_t -
-        upu_d_acc_3_in_axes2_zz*m->upu_h_3_in_spec2_x[i] -
-        v->upu_q_3*(upu_d_alpha_1_t*m->upu_h_3_in_spec2_x[i] -
-        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i] +
-        upu_d_acc_3_in_axes2_zz*m->upu_link3_mass[i]));
-    /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*v->upu_w_1_in_axes2_z;
-    const real upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*v->upu_w_1_in_axes2_z;
-    const real upu_dalpha_G_in_axes2_yx =
-        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_in_axes2_xx -
-        m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_t_2 -
-        upu_dalpha_alpha_1_in_axes2_xx*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
-    const real upu_dalpha_G_in_axes2_yy =
-        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_yz[i]*upu_dalpha_alpha_1_in_axes2_yy -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_dalpha_alpha_1_t +
-        upu_dalpha_alpha_1_t*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
+        m->upu_h_3_in_spec2_x[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yy[i] -
+        v->upu_q_3*(m->upu_link3_mass[i] + upu_d_phi_3_in_axes2_yy -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i]));
     /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_in_axes2_zz = v->inv_upu_root_1*upu_d_Gamma_1_in_axes2_z;
+    const real upu_d_G_in_axes2_yy = v->inv_upu_q_3*(m->upu_h_3_in_spec2_x[i] +
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_zz[i] + v->upu_q_3*(m->upu_link3_mass[i] +
+        upu_d_phi_3_in_axes2_yy));
     const real upu_d_G_in_axes2_yz =
         v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_d_alpha_1_in_axes2_xz -
-        m->upu_J_group_2_in_axes2_yz[i]*upu_d_alpha_1_t -
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i] -
         upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
-    /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-       balances the leg's inertia and weight along all degrees of freedom */
-    const real upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t;
-    const real upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t;
-    const real upu_dalpha_G_m1_y = v->axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
-        v->axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y;
-    const real upu_dalpha_G_m1_z = v->axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
-        v->axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y;
-    /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m1_in_axes2_x = v->upu_c_2*m->upu_h_3_in_spec2_y[i]*upu_m1_w_1_t;
-    const real upu_d_G_m1_t =
-        upu_m1_w_1_t*(v->upu_e_1_in_axes2_x*(v->inv_upu_q_3*m->upu_J_group_2_in_axes2_xz[i] -
-        m->upu_h_3_in_spec2_y[i]) -
-        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i]*v->upu_c_2);
-    const real upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t;
-    const real upu_d_G_m1_x = v->axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x -
-        v->axis_y_upu_axes2_x*upu_d_G_m1_t - v->axis_z_upu_axes2_x*upu_d_G_m1_t_2;
-    const real upu_d_G_m1_y = v->axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x -
-        v->axis_y_upu_axes2_y*upu_d_G_m1_t - v->axis_z_upu_axes2_y*upu_d_G_m1_t_2;
-    const real upu_d_G_m1_z = v->axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x -
-        v->axis_y_upu_axes2_z*upu_d_G_m1_t - v->axis_z_upu_axes2_z*upu_d_G_m1_t_2;
-    /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_m_xx = upu_d_G_m1_x*v->upu_n_m1_x;
-    const real upu_d_G_m_xy = upu_d_G_m1_y*v->upu_n_m1_x;
-    const real upu_d_G_m_xz = upu_d_G_m1_z*v->upu_n_m1_x;
-    const real upu_d_G_m_yx = upu_d_G_m1_x*v->upu_n_m1_y;
-    /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
-    const real upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*m->upu_h_3_in_spec2_y[i];
     /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real upu_d_c_in_axes2_xz = upu_d_alpha_1_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_d_c_in_axes2_xz = v->inv_upu_q_3*m->upu_h_3_in_spec2_y[i];
     /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t = v->inv_upu_q_3*(m->upu_h_3_in_spec2_x[i] +
-        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_zz[i] + v->upu_q_3*(m->upu_link3_mass[i] +
-        v->inv_upu_q_3*m->upu_h_3_in_spec2_x[i])) - m->upu_link3_mass[i];
+    const real upu_Q_t = upu_d_G_in_axes2_yy - m->upu_link3_mass[i];
     const real upu_Q_t_2 = R(0.5)*upu_Q_t;
-    const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*v->upu_w_1_in_axes2_z -
-        m->upu_link3_mass[i];
+    const real upu_Q_t_3 = upu_d_G_in_axes2_zz - m->upu_link3_mass[i];
     const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
-    const real upu_Q_t_5 = v->axis_y_upu_axes2_x*upu_Q_t_2 +
-        v->axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
-        v->axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = v->axis_y_upu_axes2_y*upu_Q_t_2 +
-        v->axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
-        v->axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = v->axis_y_upu_axes2_z*upu_Q_t_2 +
-        v->axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
-        v->axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_5 = v->axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_x*upu_Q_t_2 + v->axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = v->axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_y*upu_Q_t_2 + v->axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = v->axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_z*upu_Q_t_2 + v->axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
     const real upu_Q_t_8 = v->axis_z_upu_axes2_x*upu_Q_t_4 -
         v->axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
     const real upu_Q_t_9 = v->axis_z_upu_axes2_y*upu_Q_t_4 -
@@ -2105,98 +1960,54 @@ INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
         v->axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
     const real upu_Q_t_11 = v->axis_y_upu_axes2_x*upu_Q_t_5 + v->axis_z_upu_axes2_x*upu_Q_t_8;
     v->upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
+    const real upu_Q_t_12 = v->axis_y_upu_axes2_y*upu_Q_t_6 + v->axis_z_upu_axes2_y*upu_Q_t_9;
+    v->upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
+    v->upu_Q_zz = m->upu_link3_mass[i] + upu_d_G_in_axes2_yy + upu_d_G_in_axes2_zz -
+        v->upu_Q_xx - v->upu_Q_yy;
     v->upu_Q_xy = v->axis_y_upu_axes2_x*upu_Q_t_6 + v->axis_y_upu_axes2_y*upu_Q_t_5 +
         v->axis_z_upu_axes2_x*upu_Q_t_9 + v->axis_z_upu_axes2_y*upu_Q_t_8;
     v->upu_Q_xz = v->axis_y_upu_axes2_x*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_5 +
         v->axis_z_upu_axes2_x*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_8;
-    const real upu_Q_t_12 = v->axis_y_upu_axes2_y*upu_Q_t_6 + v->axis_z_upu_axes2_y*upu_Q_t_9;
-    v->upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
     v->upu_Q_yz = v->axis_y_upu_axes2_y*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_6 +
         v->axis_z_upu_axes2_y*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_9;
-    const real upu_Q_t_13 = v->axis_y_upu_axes2_z*upu_Q_t_7 +
-        v->axis_z_upu_axes2_z*upu_Q_t_10;
-    v->upu_Q_zz = m->upu_link3_mass[i] + 2*upu_Q_t_13;
     /* (M_ta) coupling block of M */
-    const real upu_M_ta_t = v->axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx -
-        v->axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
-        v->axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_2 = v->axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx -
-        v->axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
-        v->axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_3 = v->axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx -
-        v->axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
-        v->axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx;
-    const real upu_M_ta_t_4 = -v->axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
-        v->axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
-        v->axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_5 = -v->axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
-        v->axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
-        v->axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_6 = -v->axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
-        v->axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
-        v->axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy;
-    const real upu_M_ta_t_7 = v->upu_Q_xy*v->upu_q_z;
-    const real upu_M_ta_t_8 = v->upu_Q_xz*v->upu_q_y;
-    const real upu_M_ta_t_9 = v->upu_Q_yz*v->upu_q_x;
-    v->upu_M_ta_t_10 = upu_M_ta_t_8 - v->axis_x_upu_axes2_x*upu_M_ta_t -
-        v->axis_y_upu_axes2_x*upu_M_ta_t_4 - upu_M_ta_t_7;
-    v->upu_M_ta_t_11 = v->upu_Q_xx*v->upu_q_z - v->axis_x_upu_axes2_y*upu_M_ta_t -
-        v->axis_y_upu_axes2_y*upu_M_ta_t_4 - v->upu_Q_xz*v->upu_q_x;
-    v->upu_M_ta_t_12 = v->upu_Q_xy*v->upu_q_x - v->axis_x_upu_axes2_z*upu_M_ta_t -
-        v->axis_y_upu_axes2_z*upu_M_ta_t_4 - v->upu_Q_xx*v->upu_q_y;
-    v->upu_M_ta_t_13 = v->upu_Q_yz*v->upu_q_y - v->axis_x_upu_axes2_x*upu_M_ta_t_2 -
-        v->axis_y_upu_axes2_x*upu_M_ta_t_5 - v->upu_Q_yy*v->upu_q_z;
-    v->upu_M_ta_t_14 = upu_M_ta_t_7 - v->axis_x_upu_axes2_y*upu_M_ta_t_2 -
-        v->axis_y_upu_axes2_y*upu_M_ta_t_5 - upu_M_ta_t_9;
-    v->upu_M_ta_t_15 = v->upu_Q_yy*v->upu_q_x - v->axis_x_upu_axes2_z*upu_M_ta_t_2 -
-        v->axis_y_upu_axes2_z*upu_M_ta_t_5 - v->upu_Q_xy*v->upu_q_y;
-    v->upu_M_ta_t_16 = v->upu_Q_zz*v->upu_q_y - v->axis_x_upu_axes2_x*upu_M_ta_t_3 -
-        v->axis_y_upu_axes2_x*upu_M_ta_t_6 - v->upu_Q_yz*v->upu_q_z;
-    v->upu_M_ta_t_17 = v->upu_Q_xz*v->upu_q_z - v->axis_x_upu_axes2_y*upu_M_ta_t_3 -
-        v->axis_y_upu_axes2_y*upu_M_ta_t_6 - v->upu_Q_zz*v->upu_q_x;
-    v->upu_M_ta_t_18 = upu_M_ta_t_9 - v->axis_x_upu_axes2_z*upu_M_ta_t_3 -
-        v->axis_y_upu_axes2_z*upu_M_ta_t_6 - upu_M_ta_t_8;
+    const real upu_M_ta_t = v->upu_Q_xy*v->upu_q_z;
+    const real upu_M_ta_t_2 = v->upu_Q_xz*v->upu_q_y;
+    v->upu_M_ta_t_3 = upu_M_ta_t_2 - upu_M_ta_t;
+    v->upu_M_ta_t_4 = v->upu_Q_xx*v->upu_q_z - v->upu_Q_xz*v->upu_q_x;
+    v->upu_M_ta_t_5 = v->upu_Q_xy*v->upu_q_x - v->upu_Q_xx*v->upu_q_y;
+    v->upu_M_ta_t_6 = v->upu_Q_yz*v->upu_q_y - v->upu_Q_yy*v->upu_q_z;
+    const real upu_M_ta_t_7 = v->upu_Q_yz*v->upu_q_x;
+    v->upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_7;
+    v->upu_M_ta_t_9 = v->upu_Q_yy*v->upu_q_x - v->upu_Q_xy*v->upu_q_y;
+    v->upu_M_ta_t_10 = v->upu_Q_zz*v->upu_q_y - v->upu_Q_yz*v->upu_q_z;
+    v->upu_M_ta_t_11 = v->upu_Q_xz*v->upu_q_z - v->upu_Q_zz*v->upu_q_x;
+    v->upu_M_ta_t_12 = upu_M_ta_t_7 - upu_M_ta_t_2;
     /* (M_aa) rotational block of M */
-    v->upu_M_aa_t = upu_d_G_m_xz*v->upu_q_y - upu_d_G_m_xy*v->upu_q_z +
-        v->upu_n_m1_x*(v->axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
-        v->axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) + v->upu_M_ta_t_16*v->upu_q_y -
-        v->upu_M_ta_t_13*v->upu_q_z;
-    v->upu_M_aa_t_2 = upu_d_G_m_xx*v->upu_q_z - upu_d_G_m_xz*v->upu_q_x +
-        upu_dalpha_G_m1_y*v->upu_n_m1_x + v->upu_M_ta_t_17*v->upu_q_y -
-        v->upu_M_ta_t_14*v->upu_q_z;
-    v->upu_M_aa_t_3 = upu_d_G_m_xy*v->upu_q_x - upu_d_G_m_xx*v->upu_q_y +
-        upu_dalpha_G_m1_z*v->upu_n_m1_x + v->upu_M_ta_t_18*v->upu_q_y -
-        v->upu_M_ta_t_15*v->upu_q_z;
-    v->upu_M_aa_t_4 = upu_d_G_m_yx*v->upu_q_z - upu_d_G_m1_z*v->upu_n_m1_y*v->upu_q_x +
-        upu_dalpha_G_m1_y*v->upu_n_m1_y + v->upu_M_ta_t_11*v->upu_q_z -
-        v->upu_M_ta_t_17*v->upu_q_x;
-    v->upu_M_aa_t_5 = upu_d_G_m1_y*v->upu_n_m1_y*v->upu_q_x - upu_d_G_m_yx*v->upu_q_y +
-        upu_dalpha_G_m1_z*v->upu_n_m1_y + v->upu_M_ta_t_12*v->upu_q_z -
-        v->upu_M_ta_t_18*v->upu_q_x;
-    v->upu_M_aa_t_6 = upu_d_G_m1_y*v->upu_n_m1_z*v->upu_q_x -
-        upu_d_G_m1_x*v->upu_n_m1_z*v->upu_q_y + upu_dalpha_G_m1_z*v->upu_n_m1_z +
-        v->upu_M_ta_t_15*v->upu_q_x - v->upu_M_ta_t_12*v->upu_q_y;
+    v->upu_M_aa_t = v->upu_M_ta_t_10*v->upu_q_y - v->upu_M_ta_t_6*v->upu_q_z;
+    v->upu_M_aa_t_2 = v->upu_M_ta_t_11*v->upu_q_y - v->upu_M_ta_t_8*v->upu_q_z;
+    v->upu_M_aa_t_3 = v->upu_M_ta_t_12*v->upu_q_y - v->upu_M_ta_t_9*v->upu_q_z;
+    v->upu_M_aa_t_4 = v->upu_M_ta_t_4*v->upu_q_z - v->upu_M_ta_t_11*v->upu_q_x;
+    v->upu_M_aa_t_5 = v->upu_M_ta_t_5*v->upu_q_z - v->upu_M_ta_t_12*v->upu_q_x;
+    v->upu_M_aa_t_6 = v->upu_M_ta_t_9*v->upu_q_x - v->upu_M_ta_t_5*v->upu_q_y;
 }
 
 INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
 {
-    /* (upu-W_2) centripetal tensor of link 2 */
-    const real upu_W_2_in_axes2_xy = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_y;
     /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real upu_qdd_1_o_t = v->upu_w_1_in_axes2_z*(v->upu_n_c_in_axes2_z*v->upu_nu_1 -
-        v->upu_rel_o_in_axes2_z);
+    const real upu_qdd_1_o = v->inv_upu_root_1*v->upu_rel_o_in_axes2_z;
     /* (upu-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real upu_alpha_1_o_t = v->upu_e_1_in_axes2_x*upu_qdd_1_o_t;
-    const real upu_alpha_1_o_in_axes2_y = v->upu_c_2*upu_qdd_1_o_t;
+    const real upu_alpha_1_o_in_axes2_x = v->upu_e_1_in_axes2_x*upu_qdd_1_o;
+    const real upu_alpha_1_o_in_axes2_y = -v->upu_c_2*upu_qdd_1_o;
     /* (upu-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real upu_alpha_2_o_in_axes2_x = v->upu_W_2_in_axes2_yz - upu_alpha_1_o_t;
+    const real upu_alpha_2_o_in_axes2_x = v->upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x;
     const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - v->upu_W_2_in_axes2_xz;
     /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
     const real upu_B_2_o_t = v->axis_y_upu_axes2_x*v->upu_u_1_x +
         v->axis_y_upu_axes2_y*v->upu_u_1_y + v->axis_y_upu_axes2_z*v->upu_u_1_z -
         v->upu_qdd_2_t;
     const real upu_B_2_o_in_axes2_yx = v->inv_upu_q_3*upu_B_2_o_t;
-    const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx;
+    const real upu_B_2_o_in_axes2_xy = 2*v->upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx;
     const real upu_B_2_o_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
     const real upu_B_2_o_in_axes2_zy = v->upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
     /* (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
@@ -2207,63 +2018,50 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
     const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z
         - v->upu_bias_t_2;
     /* (upu-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real upu_f_3_o_t = v->upu_omega_1_in_axes2_x*v->upu_omega_1_in_axes2_x;
-    const real upu_f_3_o_t_2 = v->upu_omega_1_in_axes2_y*v->upu_omega_1_in_axes2_y;
     const real upu_f_3_o_in_axes2_x = upu_acc_3_o_in_axes2_x*m->upu_link3_mass[i] -
-        upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] -
-        m->upu_h_3_in_spec2_x[i]*(v->upu_W_2_t + upu_f_3_o_t_2) +
+        v->upu_f_3_t_2 - upu_B_2_o_in_axes2_xy*m->upu_h_3_in_spec2_z[i] +
         upu_alpha_1_o_in_axes2_y*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_o_in_axes2_y = upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
-        upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] + m->upu_h_3_in_spec2_z[i]*(v->upu_W_2_t +
-        upu_f_3_o_t) + upu_alpha_1_o_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_o_in_axes2_y = v->upu_f_3_t_3 +
+        upu_B_2_o_in_axes2_yx*m->upu_h_3_in_spec2_x[i] +
+        upu_acc_3_o_in_axes2_y*m->upu_link3_mass[i] -
+        upu_alpha_1_o_in_axes2_x*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        m->upu_h_3_in_spec2_y[i]*(upu_f_3_o_t + upu_f_3_o_t_2) -
-        upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        v->upu_f_3_t_4 - upu_B_2_o_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
         upu_acc_3_o_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
        reference points */
-    const real upu_mu_2_o_in_axes2_x = v->upu_mu_2_t +
+    const real upu_mu_2_o_in_axes2_x = v->upu_mu_2_t_4 + v->upu_mu_2_t +
         upu_B_2_o_in_axes2_yx*m->upu_J_group_2_in_axes2_xz[i] -
         upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*(upu_f_3_o_t_2 - v->upu_W_2_t) -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_t +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_x +
         upu_B_2_o_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
         upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_z[i];
     const real upu_mu_2_o_in_axes2_y = upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
-        v->upu_mu_2_t_2 - upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] -
-        m->upu_J_group_2_in_axes2_xz[i]*(upu_f_3_o_t - v->upu_W_2_t) +
+        v->upu_mu_2_t_5 - v->upu_mu_2_t_2 -
+        upu_B_2_o_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] +
         m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_o_in_axes2_y +
         upu_B_2_o_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_o_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
         upu_acc_3_o_in_axes2_z*m->upu_h_3_in_spec2_x[i];
-    const real upu_mu_2_o_in_axes2_z = upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
-        v->upu_mu_2_t_3 + upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
-        upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_o_t - upu_f_3_o_t_2) -
+    const real upu_mu_2_o_in_axes2_z = v->upu_mu_2_t_3 - v->upu_mu_2_t_6 +
+        upu_acc_3_o_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
+        upu_B_2_o_in_axes2_yx*m->upu_Sigma_2_in_axes2_xx[i] +
+        upu_acc_3_o_in_axes2_y*m->upu_h_3_in_spec2_x[i] -
         upu_B_2_o_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
-        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_t;
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_o_in_axes2_x +
+        m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_o_in_axes2_y;
     /* (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*v->upu_q_3;
-    const real upu_N_2_o_t = upu_N_2_o_in_axes2_y*v->upu_c_2 -
-        v->upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x;
     /* (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
         v->inv_upu_q_3*upu_mu_2_o_in_axes2_z;
-    /* (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m1_o = upu_N_2_o_t*v->upu_n_c_in_axes2_z*v->upu_w_1_in_axes2_z;
-    /* (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real upu_G_m_o_in_axes2_y = upu_G_m1_o*v->upu_n_m1_in_axes2_y;
     /* (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real upu_c_o_in_axes2_z = upu_N_2_o_t*v->upu_w_1_in_axes2_z;
-    /* (upu-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real upu_c_m_o_in_axes2_x = upu_G_m1_o*v->upu_end_p1_in_axes2_y;
+    const real upu_c_o_in_axes2_z = v->inv_upu_root_1*(upu_N_2_o_in_axes2_y*v->upu_c_2 -
+        v->upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x);
     /* (upu-U) velocity and gravity terms of the leg force */
     v->upu_U_x = v->axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
         v->axis_y_upu_axes2_x*upu_G_o_in_axes2_y - v->axis_z_upu_axes2_x*upu_c_o_in_axes2_z;
@@ -2272,107 +2070,112 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
     v->upu_U_z = v->axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
         v->axis_y_upu_axes2_z*upu_G_o_in_axes2_y - v->axis_z_upu_axes2_z*upu_c_o_in_axes2_z;
     /* (Z_a) rotational part of Z */
-    v->upu_Z_a_t = v->upu_U_z*v->upu_q_y - v->upu_U_y*v->upu_q_z +
-        v->axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y -
-        v->axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x;
-    v->upu_Z_a_t_2 = v->upu_U_x*v->upu_q_z - v->upu_U_z*v->upu_q_x +
-        v->axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y -
-        v->axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x;
-    v->upu_Z_a_t_3 = v->upu_U_y*v->upu_q_x - v->upu_U_x*v->upu_q_y +
-        v->axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y -
-        v->axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x;
+    v->upu_Z_a_t = v->upu_U_z*v->upu_q_y - v->upu_U_y*v->upu_q_z;
+    v->upu_Z_a_t_2 = v->upu_U_x*v->upu_q_z - v->upu_U_z*v->upu_q_x;
+    v->upu_Z_a_t_3 = v->upu_U_y*v->upu_q_x - v->upu_U_x*v->upu_q_y;
+}
+
+INLINE void stage_upu_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_upu *v)
+{
+    /* (upu-nd_m1) rate of moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real upu_omega_in_axes2_x = v->axis_x_upu_axes2_x*omega_x +
+        v->axis_x_upu_axes2_y*omega_y + v->axis_x_upu_axes2_z*omega_z;
+    const real upu_omega_in_axes2_y = v->axis_y_upu_axes2_x*omega_x +
+        v->axis_y_upu_axes2_y*omega_y + v->axis_y_upu_axes2_z*omega_z;
+    const real upu_omega_in_axes2_z = v->axis_z_upu_axes2_x*omega_x +
+        v->axis_z_upu_axes2_y*omega_y + v->axis_z_upu_axes2_z*omega_z;
+    const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x;
+    const real upu_nd_m1_in_axes2_y = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y +
+        v->upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+        v->upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(v->upu_omega_1_in_axes2_x -
+        upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
+        v->upu_qd_2)*(-v->upu_end_p1_in_axes2_y*v->upu_omega_1_in_axes2_y -
+        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x);
+    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->upu_gamma_c1 = v->upu_n_c_in_axes2_z*v->upu_rel_o_in_axes2_z + upu_nu_1;
 }
 
 INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
 {
     /* (upu-alpha_1) angular acceleration of link 1 */
-    const real upu_alpha_1_t = v->upu_e_1_in_axes2_x*v->upu_qdd_1_t;
-    const real upu_alpha_1_in_axes2_y = v->upu_c_2*v->upu_qdd_1_t;
+    const real upu_alpha_1_in_axes2_x = v->upu_e_1_in_axes2_x*v->upu_qdd_1;
+    const real upu_alpha_1_in_axes2_y = -v->upu_c_2*v->upu_qdd_1;
     /* (upu-alpha_2) angular acceleration of link 2 */
-    const real upu_alpha_2_in_axes2_x = v->upu_W_2_in_axes2_yz_2 - upu_alpha_1_t;
-    const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - v->upu_W_2_in_axes2_xz_2;
+    const real upu_alpha_2_in_axes2_x = v->upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x;
+    const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - v->upu_W_2_in_axes2_xz;
     /* (upu-B_2) acceleration tensor of link 2 */
-    const real upu_B_2_in_axes2_xy = v->upu_W_2_in_axes2_xy_2 - v->upu_qdd_2;
-    const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y;
-    const real upu_B_2_in_axes2_zy = v->upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x;
+    const real upu_B_2_in_axes2_xy = v->upu_W_2_in_axes2_xy - v->upu_qdd_2;
+    const real upu_B_2_in_axes2_zx = v->upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
+    const real upu_B_2_in_axes2_zy = v->upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
     /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
     const real upu_acc_3_in_axes2_x = v->upu_S_ddot_in_axes2_x - v->upu_g_in_axes2_x;
     const real upu_acc_3_in_axes2_y = v->upu_qdd_2_t - v->upu_g_in_axes2_y + v->upu_qdd_2_t_2;
     const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*v->upu_q_3 - v->upu_g_in_axes2_z -
-        v->upu_bias_t_3;
+        v->upu_bias_t_2;
     /* (upu-f_3) inertia force of link 3 less its weight */
-    const real upu_f_3_t = v->upu_omega_1_in_axes2_x_2*v->upu_omega_1_in_axes2_x_2;
-    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] -
-        v->upu_W_2_t_3*m->upu_h_3_in_spec2_x[i] - upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i]
-        + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i];
-    const real upu_f_3_in_axes2_y = upu_acc_3_in_axes2_y*m->upu_link3_mass[i] +
-        m->upu_h_3_in_spec2_x[i]*v->upu_qdd_2_t_3 + m->upu_h_3_in_spec2_z[i]*(v->upu_W_2_t +
-        upu_f_3_t) + upu_alpha_1_t*m->upu_h_3_in_spec2_y[i];
+    const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*m->upu_link3_mass[i] - v->upu_f_3_t_2
+        + upu_alpha_1_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
+        upu_B_2_in_axes2_xy*m->upu_h_3_in_spec2_z[i];
+    const real upu_f_3_in_axes2_y = v->upu_f_3_t_3 + upu_acc_3_in_axes2_y*m->upu_link3_mass[i]
+        + m->upu_h_3_in_spec2_x[i]*v->upu_qdd_2_t_3 -
+        upu_alpha_1_in_axes2_x*m->upu_h_3_in_spec2_y[i];
     const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*m->upu_h_3_in_spec2_x[i] -
-        m->upu_h_3_in_spec2_y[i]*(v->upu_W_2_t_2 + upu_f_3_t) -
-        upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
+        v->upu_f_3_t_4 - upu_B_2_in_axes2_zy*m->upu_h_3_in_spec2_z[i] +
         upu_acc_3_in_axes2_z*m->upu_link3_mass[i];
     /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real upu_mu_2_in_axes2_x = v->upu_mu_2_t +
+    const real upu_mu_2_in_axes2_x = v->upu_mu_2_t_4 + v->upu_mu_2_t +
         m->upu_J_group_2_in_axes2_xz[i]*v->upu_qdd_2_t_3 -
-        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] -
-        m->upu_J_group_2_in_axes2_yz[i]*(v->upu_W_2_t - v->upu_W_2_t_2) -
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_t +
+        upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_y[i] +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_x +
         upu_B_2_in_axes2_zy*m->upu_Sigma_2_in_axes2_yy[i] -
         upu_B_2_in_axes2_zx*m->upu_J_group_2_in_axes2_xy[i] -
         upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_z[i];
     const real upu_mu_2_in_axes2_y = upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_y[i] -
-        v->upu_mu_2_t_2 + m->upu_J_group_2_in_axes2_xz[i]*(v->upu_W_2_t - upu_f_3_t) -
+        v->upu_mu_2_t_5 - v->upu_mu_2_t_2 +
+        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y -
         upu_B_2_in_axes2_xy*m->upu_J_group_2_in_axes2_yz[i] +
-        m->upu_Sigma_2_in_axes2_zz[i]*upu_alpha_1_in_axes2_y +
         upu_B_2_in_axes2_zy*m->upu_J_group_2_in_axes2_xy[i] -
         upu_B_2_in_axes2_zx*m->upu_Sigma_2_in_axes2_xx[i] -
         upu_acc_3_in_axes2_z*m->upu_h_3_in_spec2_x[i];
-    const real upu_mu_2_in_axes2_z = upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] -
-        v->upu_mu_2_t_3 + m->upu_Sigma_2_in_axes2_xx[i]*v->upu_qdd_2_t_3 +
+    const real upu_mu_2_in_axes2_z = v->upu_mu_2_t_3 - v->upu_mu_2_t_6 +
+        upu_acc_3_in_axes2_x*m->upu_h_3_in_spec2_z[i] +
+        m->upu_Sigma_2_in_axes2_xx[i]*v->upu_qdd_2_t_3 +
         upu_acc_3_in_axes2_y*m->upu_h_3_in_spec2_x[i] +
-        m->upu_J_group_2_in_axes2_xy[i]*(upu_f_3_t - v->upu_W_2_t_2) -
-        upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i] +
+        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_in_axes2_x +
         m->upu_J_group_2_in_axes2_yz[i]*upu_alpha_1_in_axes2_y -
-        m->upu_J_group_2_in_axes2_xz[i]*upu_alpha_1_t;
+        upu_B_2_in_axes2_xy*m->upu_Sigma_2_in_axes2_yy[i];
     /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*v->upu_q_3;
-    const real upu_N_2_t = upu_N_2_in_axes2_y*v->upu_c_2 -
-        v->upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x;
     /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real upu_G_in_axes2_y = upu_f_3_in_axes2_y + v->inv_upu_q_3*upu_mu_2_in_axes2_z;
-    /* (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real upu_G_m1 = upu_N_2_t*v->upu_n_c_in_axes2_z*v->upu_w_1_in_axes2_z;
-    /* (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all
-       degrees of freedom */
-    const real upu_G_m_in_axes2_y = upu_G_m1*v->upu_n_m1_in_axes2_y;
     /* (upu-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real upu_c_in_axes2_z = upu_N_2_t*v->upu_w_1_in_axes2_z;
+    const real upu_c_in_axes2_z = v->inv_upu_root_1*(upu_N_2_in_axes2_y*v->upu_c_2 -
+        v->upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x);
     v->upu_c_x = v->axis_z_upu_axes2_x*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_x*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_x*upu_G_in_axes2_y;
     v->upu_c_y = v->axis_z_upu_axes2_y*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_y*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_y*upu_G_in_axes2_y;
     v->upu_c_z = v->axis_z_upu_axes2_z*upu_c_in_axes2_z -
         v->axis_x_upu_axes2_z*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_z*upu_G_in_axes2_y;
-    /* (upu-c_m) moment of the leg on the platform without actuation */
-    const real upu_c_m_in_axes2_x = upu_G_m1*v->upu_end_p1_in_axes2_y;
-    v->upu_c_m_x = v->axis_x_upu_axes2_x*upu_c_m_in_axes2_x -
-        v->axis_y_upu_axes2_x*upu_G_m_in_axes2_y;
-    v->upu_c_m_y = v->axis_x_upu_axes2_y*upu_c_m_in_axes2_x -
-        v->axis_y_upu_axes2_y*upu_G_m_in_axes2_y;
-    v->upu_c_m_z = v->axis_x_upu_axes2_z*upu_c_m_in_axes2_x -
-        v->axis_y_upu_axes2_z*upu_G_m_in_axes2_y;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics ---- */
-INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2388,14 +2191,65 @@ INLINE void dynamics_before(const prepared *m, size_t w, size_t k, const real *X
     s[19*w + k] = v->h_star_y;
     s[20*w + k] = v->h_star_z;
     s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
+    s[22*w + k] = v->J_star_yy;
+    s[23*w + k] = v->J_star_zz;
+    s[24*w + k] = v->J_star_xy;
+    s[25*w + k] = v->J_star_xz;
+    s[26*w + k] = v->J_star_yz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
+{
+    t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
+    status_flags *t)
+{
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
+    const real *A, values *v, real *s, status_flags *t)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    stage_A_V(w, k, A, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_xy;
+    s[2*w + k] = v->R_xz;
+    s[3*w + k] = v->R_yx;
+    s[4*w + k] = v->R_yy;
+    s[5*w + k] = v->R_yz;
+    s[6*w + k] = v->R_zx;
+    s[7*w + k] = v->R_zy;
+    s[8*w + k] = v->R_zz;
+    s[9*w + k] = v->B_p_xy;
+    s[10*w + k] = v->B_p_xz;
+    s[11*w + k] = v->W_p_t_4;
+    s[12*w + k] = v->B_p_yx;
+    s[13*w + k] = v->B_p_yz;
+    s[14*w + k] = v->W_p_t_5;
+    s[15*w + k] = v->B_p_zx;
+    s[16*w + k] = v->B_p_zy;
+    s[17*w + k] = v->W_p_t_6;
+    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics ---- */
 INLINE void dynamics_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real
     *s)
 {
@@ -2413,12 +2267,10 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_M_dynamics(m, i, &v);
     stage_upu_Z_dynamics(m, i, &v);
-    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*v.upu_rel_o_in_axes2_z + v.upu_nu_1;
+    stage_upu_constraint_bias_dynamics(w, j, V, &v);
     /* (M_tt) translational block of M */
     gather(&terms[0*count + k], add, v.upu_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v.upu_Q_xy);  /* M_tt_xy */
@@ -2427,15 +2279,15 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.upu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.upu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.upu_M_ta_t_18);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.upu_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.upu_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.upu_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.upu_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.upu_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.upu_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.upu_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.upu_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.upu_M_ta_t_12);  /* M_ta_zz */
     /* (M_aa) rotational block of M */
     gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
@@ -2467,15 +2319,16 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     o[9*count + k] = v.upu_Hk_a_1_x;
     o[10*count + k] = v.upu_Hk_a_1_y;
     o[11*count + k] = v.upu_Hk_a_1_z;
-    /* (upu-gamma_c1) */
-    o[12*count + k] = upu_gamma_c1;
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[12*count + k] = v.upu_gamma_c1;
     o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
         + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
         v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
-        upu_gamma_c1)));
+        v.upu_gamma_c1)));
     o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_3);
 }
 
@@ -2529,19 +2382,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (Z_t) */
@@ -2626,10 +2479,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] = {0}, sums[27] = {0};
-    real terms_upu[27*LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
+    real s[33] CLEARED, sums[27] CLEARED;
+    real terms_upu[27*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    dynamics_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         dynamics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
@@ -2651,7 +2504,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real o_upu[15*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        dynamics_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 27*LANES);
@@ -2669,31 +2522,6 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
 }
 
 /* ---- M ---- */
-INLINE void M_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[18*w + k] = v->h_star_x;
-    s[19*w + k] = v->h_star_y;
-    s[20*w + k] = v->h_star_z;
-    s[21*w + k] = v->J_star_xx;
-    s[22*w + k] = v->J_star_xy;
-    s[23*w + k] = v->J_star_xz;
-    s[24*w + k] = v->J_star_yy;
-    s[25*w + k] = v->J_star_yz;
-    s[26*w + k] = v->J_star_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     int add, const real *s, const real *X, real *terms, real *o)
 {
@@ -2708,15 +2536,15 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.upu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.upu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.upu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.upu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.upu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.upu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.upu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.upu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.upu_M_ta_t_18);  /* M_ta_zz */
+    gather(&terms[6*count + k], add, v.upu_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v.upu_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v.upu_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v.upu_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v.upu_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v.upu_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v.upu_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v.upu_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v.upu_M_ta_t_12);  /* M_ta_zz */
     /* (M_aa) rotational block of M */
     gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
@@ -2725,14 +2553,8 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[19*count + k], add, v.upu_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[20*count + k], add, v.upu_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-        LEAST_3);
-}
-
-INLINE void M_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
@@ -2765,19 +2587,19 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-    const real J_star_xy = s[22*w + k];
+    const real J_star_xy = s[24*w + k];
     const real M_aa_xy_of_legs = sums[16*w + k];
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-    const real J_star_xz = s[23*w + k];
+    const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[17*w + k];
     const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-    const real J_star_yy = s[24*w + k];
+    const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[18*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-    const real J_star_yz = s[25*w + k];
+    const real J_star_yz = s[26*w + k];
     const real M_aa_yz_of_legs = sums[19*w + k];
     const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-    const real J_star_zz = s[26*w + k];
+    const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2833,15 +2655,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] = {0}, sums[21] = {0};
-    real terms_upu[21*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
+    real s[27] CLEARED, sums[21] CLEARED;
+    real terms_upu[21*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    M_before(m, 1, 0, X, &v, s, t);
+    any_before(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         M_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
-        M_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
+        any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
@@ -2856,7 +2678,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        M_before(m, LANES, k, X, &v, s, t);
+        any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
@@ -2864,7 +2686,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
             M_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, sums, o_upu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            M_place_upu(k, k, LANES, o_upu, t);
+            any_place_upu(k, k, LANES, o_upu, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -2873,22 +2695,6 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, const real *V, values *v, real *s)
 {
     stage_Z_dynamics(m, w, k, V, v);
@@ -2905,7 +2711,7 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_Z_dynamics(m, i, &v);
     /* (Z_t) translational part of Z */
     gather(&terms[0*count + k], add, v.upu_U_x);  /* Z_t_x_of_legs */
@@ -2916,14 +2722,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     gather(&terms[4*count + k], add, v.upu_Z_a_t_2);  /* Z_a_y_of_legs */
     gather(&terms[5*count + k], add, v.upu_Z_a_t_3);  /* Z_a_z_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-        LEAST_3);
-}
-
-INLINE void Z_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
@@ -2961,15 +2761,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_upu[6*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Z_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
-        Z_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
+        any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
@@ -2985,7 +2785,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     real o_upu[LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
     clear(sums, 6*LANES);
@@ -2994,7 +2794,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
             Z_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_upu);
         }
         for (size_t k = 0; k < LANES; ++k) {
-            Z_place_upu(k, k, LANES, o_upu, t);
+            any_place_upu(k, k, LANES, o_upu, t);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
@@ -3003,22 +2803,6 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
 }
 
 /* ---- H ---- */
-INLINE void H_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -3035,7 +2819,8 @@ INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[7*count + k] = (v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z)) +
         (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z));
     o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -3053,10 +2838,10 @@ INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    H_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         H_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3072,7 +2857,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        H_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3085,22 +2870,6 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
-    status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, real *o)
 {
@@ -3117,8 +2886,9 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t 
     o[7*count + k] = (v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) + (v.upu_Hk_a_1_x +
         (v.upu_Hk_a_1_y + v.upu_Hk_a_1_z));
     o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3);
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
+        LEAST_3);
 }
 
 INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3136,10 +2906,10 @@ INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, 
 
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[8*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    Hk_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Hk_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3155,7 +2925,7 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
     real o_upu[8*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Hk_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3168,37 +2938,20 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, st
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, const real *V, real *o)
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
+    stage_upu_constraint_bias_dynamics(w, j, V, &v);
     /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
-    const real upu_gamma_c1 = v.upu_n_c_in_axes2_z*v.upu_rel_o_in_axes2_z + v.upu_nu_1;
-    /* (upu-gamma_c1) */
-    o[0*count + k] = upu_gamma_c1;
-    o[2*count + k] = upu_gamma_c1;
+    o[0*count + k] = v.upu_gamma_c1;
+    o[2*count + k] = v.upu_gamma_c1;
     o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_3);
 }
 
@@ -3213,10 +2966,10 @@ INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, s
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    constraint_bias_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraint_bias_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -3232,7 +2985,7 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraint_bias_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3245,33 +2998,6 @@ INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const re
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, size_t k, const real *X, const real *V,
-    const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
     values *v, real *s)
 {
@@ -3282,9 +3008,6 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     const real t_ddot_z = A[2*w + k];
     const real a_t_z = t_ddot_z - m->gravity_z;
-    const real a_t_in_platform_x = v->R_yx*a_t_y + v->R_zx*a_t_z + v->R_xx*a_t_x;
-    const real a_t_in_platform_y = v->R_xy*a_t_x + v->R_zy*a_t_z + v->R_yy*a_t_y;
-    const real a_t_in_platform_z = v->R_xz*a_t_x + v->R_yz*a_t_y + v->R_zz*a_t_z;
     /* (f_p) inertia force of the platform less its weight */
     const real f_p_x = a_t_x*m->platform_mass + v->B_p_xy*v->h_star_y + v->B_p_xz*v->h_star_z
         - v->W_p_t_4*v->h_star_x;
@@ -3314,27 +3037,24 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real alpha_in_platform_x = v->R_yx*alpha_y + v->R_zx*alpha_z + v->R_xx*alpha_x;
     const real alpha_in_platform_y = v->R_xy*alpha_x + v->R_zy*alpha_z + v->R_yy*alpha_y;
     const real alpha_in_platform_z = v->R_xz*alpha_x + v->R_yz*alpha_y + v->R_zz*alpha_z;
-    const real mu_p_in_platform_x = m->J_star_in_platform_xx*alpha_in_platform_x +
+    const real mu_p_t_4 = m->J_star_in_platform_xx*alpha_in_platform_x +
         m->J_star_in_platform_xy*alpha_in_platform_y +
-        m->J_star_in_platform_xz*alpha_in_platform_z +
-        a_t_in_platform_z*m->h_star_in_platform_y - a_t_in_platform_y*m->h_star_in_platform_z
-        + mu_p_t_3*omega_in_platform_y - mu_p_t_2*omega_in_platform_z;
-    const real mu_p_in_platform_y = m->J_star_in_platform_xy*alpha_in_platform_x +
+        m->J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
+        mu_p_t_2*omega_in_platform_z;
+    const real mu_p_t_5 = m->J_star_in_platform_xy*alpha_in_platform_x +
         m->J_star_in_platform_yy*alpha_in_platform_y +
-        m->J_star_in_platform_yz*alpha_in_platform_z +
-        a_t_in_platform_x*m->h_star_in_platform_z - a_t_in_platform_z*m->h_star_in_platform_x
-        + mu_p_t*omega_in_platform_z - mu_p_t_3*omega_in_platform_x;
-    const real mu_p_in_platform_z = m->J_star_in_platform_xz*alpha_in_platform_x +
+        m->J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
+        mu_p_t_3*omega_in_platform_x;
+    const real mu_p_t_6 = m->J_star_in_platform_xz*alpha_in_platform_x +
         m->J_star_in_platform_yz*alpha_in_platform_y +
-        m->J_star_in_platform_zz*alpha_in_platform_z +
-        a_t_in_platform_y*m->h_star_in_platform_x - a_t_in_platform_x*m->h_star_in_platform_y
-        + mu_p_t_2*omega_in_platform_x - mu_p_t*omega_in_platform_y;
-    const real mu_p_x = v->R_xx*mu_p_in_platform_x + v->R_xy*mu_p_in_platform_y +
-        v->R_xz*mu_p_in_platform_z;
-    const real mu_p_y = v->R_yx*mu_p_in_platform_x + v->R_yy*mu_p_in_platform_y +
-        v->R_yz*mu_p_in_platform_z;
-    const real mu_p_z = v->R_zx*mu_p_in_platform_x + v->R_zy*mu_p_in_platform_y +
-        v->R_zz*mu_p_in_platform_z;
+        m->J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
+        mu_p_t*omega_in_platform_y;
+    const real mu_p_x = a_t_z*v->h_star_y - a_t_y*v->h_star_z + v->R_xx*mu_p_t_4 +
+        v->R_xy*mu_p_t_5 + v->R_xz*mu_p_t_6;
+    const real mu_p_y = a_t_x*v->h_star_z - a_t_z*v->h_star_x + v->R_yx*mu_p_t_4 +
+        v->R_yy*mu_p_t_5 + v->R_yz*mu_p_t_6;
+    const real mu_p_z = a_t_y*v->h_star_x - a_t_x*v->h_star_y + v->R_zx*mu_p_t_4 +
+        v->R_zy*mu_p_t_5 + v->R_zz*mu_p_t_6;
     s[18*w + k] = f_p_x;
     s[19*w + k] = f_p_y;
     s[20*w + k] = f_p_z;
@@ -3349,14 +3069,13 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_A_X(w, j, A, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
     /* (R_a) moment that actuators and external wrench must give */
-    const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y - v.upu_c_m_x;
-    const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z - v.upu_c_m_y;
-    const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x - v.upu_c_m_z;
+    const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y;
+    const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z;
+    const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x;
     /* (R_t) force that actuators and external wrench must give */
     gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
@@ -3382,8 +3101,8 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     o[10*count + k] = v.upu_Hk_a_1_y;
     o[11*count + k] = v.upu_Hk_a_1_z;
     o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_3);
 }
 
@@ -3440,12 +3159,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] = {0}, sums[6] = {0};
-    real terms_upu[6*LEGS(LEGS_OF_upu)] = {0}, o_upu[13*LEGS(LEGS_OF_upu)] = {0};
+    real s[24] CLEARED, sums[6] CLEARED;
+    real terms_upu[6*LEGS(LEGS_OF_upu)] CLEARED, o_upu[13*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    required_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
-        required_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu, o_upu);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
+            required_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu,
+                o_upu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         required_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, t);
@@ -3464,7 +3186,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     real o_upu[13*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        required_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
     clear(sums, 6*LANES);
@@ -3482,22 +3204,6 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(const prepared *m, size_t w, size_t k, const real *X, values
-    *v, real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k,
     size_t count, const real *s, const real *X, real *o)
 {
@@ -3530,10 +3236,10 @@ INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at
 
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    inverse_kinematics_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         inverse_kinematics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3549,7 +3255,7 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        inverse_kinematics_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3562,39 +3268,22 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, const real *V, real *o)
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     /* (upu-qd_1) rate of joint 1 */
-    o[0*count + k] = v.upu_qd_1_2;
+    o[0*count + k] = v.upu_qd_1;
     /* (upu-qd_2) rate of joint 2 */
     o[1*count + k] = v.upu_qd_2;
     /* (upu-qd_3) rate of joint 3 */
     o[2*count + k] = v.upu_S_dot_in_axes2_x;
-    o[4*count + k] = v.upu_qd_1_2 + (v.upu_qd_2 + v.upu_S_dot_in_axes2_x);
+    o[4*count + k] = v.upu_qd_1 + (v.upu_qd_2 + v.upu_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-        LEAST_3);
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3610,10 +3299,10 @@ INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] = {0};
-    real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    joint_rates_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_rates_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -3629,7 +3318,7 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_rates_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3642,54 +3331,25 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(const prepared *m, size_t w, size_t k, const real *X, const
-    real *V, const real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t
     k, size_t count, const real *s, const real *X, const real *V, const real *A, real *o)
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_A_X(w, j, A, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     /* (upu-rel) acceleration of the connection point left to the joint accelerations */
     const real upu_rel_in_axes2_x = v.upu_S_ddot_in_axes2_x + v.upu_W_2_t_3*v.upu_q_3;
     /* (upu-qdd_1) acceleration of joint 1 */
-    o[0*count + k] = -v.upu_qdd_1_t;
+    o[0*count + k] = v.upu_qdd_1;
     /* (upu-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.upu_qdd_2;
     /* (upu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = upu_rel_in_axes2_x;
-    o[4*count + k] = v.upu_qdd_1_t + (v.upu_qdd_2 + upu_rel_in_axes2_x);
+    o[4*count + k] = v.upu_qdd_1 + (v.upu_qdd_2 + upu_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
-        LEAST_3);
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3705,10 +3365,10 @@ INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t a
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[5*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    joint_accelerations_before(m, 1, 0, X, V, A, &v, s, t);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_accelerations_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -3724,7 +3384,7 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
     real o_upu[5*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        joint_accelerations_before(m, LANES, k, X, V, A, &v, s, t);
+        any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3737,22 +3397,6 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(const prepared *m, size_t w, size_t k, const real *X, values *v,
-    real *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
     count, const real *s, const real *X, real *o)
 {
@@ -3774,10 +3418,10 @@ INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_
 
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[3*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    constraints_before(m, 1, 0, X, &v, s, t);
+    any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraints_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3793,7 +3437,7 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
     real o_upu[3*LANES];
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        constraints_before(m, LANES, k, X, &v, s, t);
+        any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
@@ -3806,40 +3450,12 @@ INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restri
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, const
-    real *A, values *v, real *s, status_flags *t)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    stage_A_V(w, k, A, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    s[9*w + k] = v->B_p_xy;
-    s[10*w + k] = v->B_p_xz;
-    s[11*w + k] = v->W_p_t_4;
-    s[12*w + k] = v->B_p_yx;
-    s[13*w + k] = v->B_p_yz;
-    s[14*w + k] = v->W_p_t_5;
-    s[15*w + k] = v->B_p_zx;
-    s[16*w + k] = v->B_p_zy;
-    s[17*w + k] = v->W_p_t_6;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
     const real *s, const real *X, const real *V, const real *A, real *o)
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    stage_upu_A_X(w, j, A, &v);
-    stage_upu_V_X(w, j, V, &v);
+    stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
     /* (upu-c) leg force on the platform without actuation and without the mass at the connection
@@ -3847,25 +3463,21 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = v.upu_c_x;
     o[1*count + k] = v.upu_c_y;
     o[2*count + k] = v.upu_c_z;
-    /* (upu-c_m) moment of the leg on the platform without actuation */
-    o[3*count + k] = v.upu_c_m_x;
-    o[4*count + k] = v.upu_c_m_y;
-    o[5*count + k] = v.upu_c_m_z;
     /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[6*count + k] = v.axis_x_upu_axes2_x;
-    o[7*count + k] = v.axis_x_upu_axes2_y;
-    o[8*count + k] = v.axis_x_upu_axes2_z;
+    o[3*count + k] = v.axis_x_upu_axes2_x;
+    o[4*count + k] = v.axis_x_upu_axes2_y;
+    o[5*count + k] = v.axis_x_upu_axes2_z;
     /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    o[9*count + k] = v.upu_n_c_x;
-    o[10*count + k] = v.upu_n_c_y;
-    o[11*count + k] = v.upu_n_c_z;
+    o[6*count + k] = v.upu_n_c_x;
+    o[7*count + k] = v.upu_n_c_y;
+    o[8*count + k] = v.upu_n_c_z;
     /* (upu-mu_c) moment that goes with it */
-    o[12*count + k] = v.upu_n_m1_x;
-    o[13*count + k] = v.upu_n_m1_y;
-    o[14*count + k] = v.upu_n_m1_z;
-    o[15*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+    o[9*count + k] = v.upu_n_m1_x;
+    o[10*count + k] = v.upu_n_m1_y;
+    o[11*count + k] = v.upu_n_m1_z;
+    o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_3);
 }
 
@@ -3875,31 +3487,31 @@ INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count
     leg_force[6*i*w + k] = o[0*count + at];
     leg_force[(6*i + 1)*w + k] = o[1*count + at];
     leg_force[(6*i + 2)*w + k] = o[2*count + at];
-    leg_force[(6*i + 3)*w + k] = o[3*count + at];
-    leg_force[(6*i + 4)*w + k] = o[4*count + at];
-    leg_force[(6*i + 5)*w + k] = o[5*count + at];
-    actuator[6*i*w + k] = o[6*count + at];
-    actuator[(6*i + 1)*w + k] = o[7*count + at];
-    actuator[(6*i + 2)*w + k] = o[8*count + at];
-    constraint_direction[6*i*w + k] = o[9*count + at];
-    constraint_direction[(6*i + 1)*w + k] = o[10*count + at];
-    constraint_direction[(6*i + 2)*w + k] = o[11*count + at];
-    constraint_direction[(6*i + 3)*w + k] = o[12*count + at];
-    constraint_direction[(6*i + 4)*w + k] = o[13*count + at];
-    constraint_direction[(6*i + 5)*w + k] = o[14*count + at];
-    t->singular[k] += o[15*count + at];
+    actuator[6*i*w + k] = o[3*count + at];
+    actuator[(6*i + 1)*w + k] = o[4*count + at];
+    actuator[(6*i + 2)*w + k] = o[5*count + at];
+    constraint_direction[6*i*w + k] = o[6*count + at];
+    constraint_direction[(6*i + 1)*w + k] = o[7*count + at];
+    constraint_direction[(6*i + 2)*w + k] = o[8*count + at];
+    constraint_direction[(6*i + 3)*w + k] = o[9*count + at];
+    constraint_direction[(6*i + 4)*w + k] = o[10*count + at];
+    constraint_direction[(6*i + 5)*w + k] = o[11*count + at];
+    t->singular[k] += o[12*count + at];
 }
 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] = {0};
-    real o_upu[16*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED;
+    real o_upu[13*LEGS(LEGS_OF_upu)] CLEARED;
+    clear(leg_force, 6*NL);
     clear(actuator, 18);
     values v;
-    legs_before(m, 1, 0, X, V, A, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
-        legs_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
+    any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
+            legs_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         legs_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, leg_force, actuator, constraint_direction, t);
@@ -3907,22 +3519,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 }
 
 /* ---- potential ---- */
-INLINE void potential_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real
-    *s, status_flags *t)
-{
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_xy;
-    s[2*w + k] = v->R_xz;
-    s[3*w + k] = v->R_yx;
-    s[4*w + k] = v->R_yy;
-    s[5*w + k] = v->R_yz;
-    s[6*w + k] = v->R_zx;
-    s[7*w + k] = v->R_zy;
-    s[8*w + k] = v->R_zz;
-    t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
-}
-
 INLINE void potential_between(const prepared *m, size_t w, size_t k, const real *X, values *v,
     real *s)
 {
@@ -3963,11 +3559,6 @@ INLINE void potential_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1);
 }
 
-INLINE void potential_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
-{
-    t->singular[k] += o[0*count + at];
-}
-
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
 {
     /* (potential) */
@@ -3980,15 +3571,18 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] = {0}, sums[1] = {0};
-    real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[LEGS(LEGS_OF_upu)] = {0};
+    real s[19] CLEARED, sums[1] CLEARED;
+    real terms_upu[LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
-    potential_before(m, 1, 0, X, &v, s, t);
-    for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
-        potential_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
+    any_before_2(m, 1, 0, X, &v, s, t);
+    for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
+            potential_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu,
+                o_upu);
+        }
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
-        potential_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
+        any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
@@ -4026,12 +3620,12 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
        degrees of freedom */
     const real upu_pivot_size = magnitude(v.upu_root_1_t);
     const real upu_pivot_size_2 = magnitude(v.upu_q_3_t);
-    const real upu_pivot_size_3 = magnitude(v.upu_volume_c_t);
-    const real upu_pivot_size_4 = magnitude(v.upu_q_3);
-    const real upu_pivot_size_5 = magnitude(v.upu_w_1_t);
+    const real upu_pivot_size_3 = magnitude(v.upu_q_3);
+    const real upu_pivot_size_4 = magnitude(v.upu_root_1);
+    const real upu_pivot_size_5 = magnitude(v.upu_volume_c_t);
     const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
-        R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
-        R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
+        R(1.25)*root(upu_pivot_size_2)), R(1.25)*upu_pivot_size_3), R(1.25)*upu_pivot_size_4),
+        R(1.5624999999999998)*upu_pivot_size_5);
     /* (spread) rms distance of the platform points from their centroid */
     const real upu_spread_t = m->b_c_in_platform_x - m->upu_platform_point_x[i];
     const real upu_spread_t_2 = m->b_c_in_platform_y - m->upu_platform_point_y[i];
@@ -4063,8 +3657,8 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
         v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
         upu_least_pivots)));
     o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_2) + UNLESS(magnitude(v.upu_q_3) > LEAST_3) + UNLESS(magnitude(v.upu_w_1_t) >
+        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
+        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
         LEAST_3);
 }
 
@@ -4102,8 +3696,8 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] = {0}, sums[1] = {0};
-    real terms_upu[LEGS(LEGS_OF_upu)] = {0}, o_upu[15*LEGS(LEGS_OF_upu)] = {0};
+    real s[18] CLEARED, sums[1] CLEARED;
+    real terms_upu[LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4341,7 +3935,7 @@ INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const re
 int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out)
 {
-    real Hk[NV*NC] = {0}, constraint_bias[3] = {0};
+    real Hk[NV*NC] CLEARED, constraint_bias[3] CLEARED;
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4553,8 +4147,8 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *tau_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, subtract_1[NV] = {0}, beside_1[NV*NV] =
-        {0}, solve_1[NV] = {0}, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
+    real required[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, subtract_1[NV] CLEARED,
+        beside_1[NV*NV] = {0}, solve_1[NV] CLEARED, unsure_solve_1[1] = {0}, work[NV*PADDED(NV)];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4611,9 +4205,9 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
     const real *wrench, real *A_out, real *lambda_out)
 {
     static const real no_wrench[NW] = {0};
-    real M[NV*NV] = {0}, Z[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0}, constraint_bias[3] = {0},
-        times_1[NV] = {0}, add_1[NV] = {0}, subtract_1[NV] = {0}, negative_1[3] = {0}, join_1[9] =
-        {0}, solve_1[(NV + NC)] = {0}, work[(NV + NC)*(PADDED(NV + NC))];
+    real M[NV*NV] CLEARED, Z[NV] CLEARED, H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, constraint_bias[3]
+        CLEARED, times_1[NV] = {0}, add_1[NV] CLEARED, subtract_1[NV] CLEARED, negative_1[3] CLEARED,
+        join_1[9] = {0}, solve_1[(NV + NC)] CLEARED, work[(NV + NC)*(PADDED(NV + NC))];
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -4698,8 +4292,8 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
     static const real no_wrench[NW] = {0};
     static const size_t places_add_forces_1[] = {0, 1, 2};
     static const size_t places_forces[] = {0, 1, 2};
-    real split_1[3] = {0}, split_2[3] = {0}, leg_force[6*NL] = {0}, actuator[18] = {0},
-        constraint_direction[6*NC] = {0}, add_forces_1[6*NL] = {0}, forces[NL*(NL + NC)] = {0};
+    real split_1[3] = {0}, split_2[3] = {0}, leg_force[6*NL] CLEARED, actuator[18] CLEARED,
+        constraint_direction[6*NC] CLEARED, add_forces_1[6*NL] CLEARED, forces[NL*(NL + NC)] CLEARED;
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -4720,7 +4314,7 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
 int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *kinetic_out, real
     *potential_out)
 {
-    real M[NV*NV] = {0}, potential_of_potential[1] = {0}, kinetic[1] = {0};
+    real M[NV*NV] CLEARED, potential_of_potential[1] CLEARED, kinetic[1] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -4741,8 +4335,8 @@ int tripod_3upu_condition(const prepared *m, const real *X, real *sigma_out, rea
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, sigma[NU] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED, sigma[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4776,8 +4370,9 @@ int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *si
     const real *length = NULL;
     static const real no_length[1] = {0};
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, legs[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] = {0}, sigma[NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, legs[NL] CLEARED, reach[NL] CLEARED,
+        beside_1[NV*NV] = {0}, choose_length_1[1] CLEARED, divide_rows_1[NV*NV] CLEARED, sigma[NV] =
+        {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4810,11 +4405,11 @@ int tripod_3upu_manipulability(const prepared *m, const real *X, real *measure_o
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
     static const size_t places_divide_rows_2[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
-        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
-        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
-        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, subtract_1[1] CLEARED, choose_length_1[1] CLEARED, divide_rows_1[NV*NU] CLEARED,
+        subtract_2[1] CLEARED, choose_length_2[1] CLEARED, divide_rows_2[NV*NC] CLEARED,
+        transposed_1[NC*NV] = {0}, null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0},
+        product_1[NC*NU] = {0}, singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4861,9 +4456,10 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
     *legs_out)
 {
     static const size_t places_divide_rows_1[] = {3, 4, 5};
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
-        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
-        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, lengths[2] CLEARED, pivots[NL] CLEARED, reach[NL]
+        CLEARED, beside_1[NV*NV] = {0}, subtract_1[1] CLEARED, choose_length_1[1] CLEARED,
+        divide_rows_1[NV*NV] CLEARED, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] =
+        {0}, legs[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4895,8 +4491,8 @@ int tripod_3upu_singularity_distance(const prepared *m, const real *X, real *act
 static int pose_residual_one(const prepared *m, const real *X, const real *q_actuated, real
     *residual_out)
 {
-    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
-        {0}, negative_1[3] = {0}, residual[6] = {0};
+    real q[NJ] CLEARED, q_of_inverse_kinematics_from_2[3] = {0}, subtract_1[NU] CLEARED,
+        constraints[3] CLEARED, negative_1[3] CLEARED, residual[6] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NU, q_actuated, why.invalid);
@@ -4915,7 +4511,7 @@ static int pose_residual_one(const prepared *m, const real *X, const real *q_act
 
 static int slope_one(const prepared *m, const real *X, real *slope_out)
 {
-    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, slope[NV*NV] = {0};
+    real H[NV*NU] CLEARED, Hk[NV*NC] CLEARED, slope[NV*NV] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -4983,7 +4579,7 @@ int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, co
 
 static int constraint_residual_one(const prepared *m, const real *X, real *residual_out)
 {
-    real constraints[3] = {0}, residual[NC] = {0};
+    real constraints[3] CLEARED, residual[NC] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -5066,7 +4662,7 @@ int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, rea
 {
     (void)m;
     (void)X;
-    real subtract_1[NV] = {0};
+    real subtract_1[NV] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NV, V, why.invalid);
@@ -5079,7 +4675,7 @@ int tripod_3upu_dissipation(const prepared *m, const real *X, const real *V, rea
 
 int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *momentum_out)
 {
-    real M[NV*NV] = {0}, momentum[NV] = {0};
+    real M[NV*NV] CLEARED, momentum[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -5091,7 +4687,7 @@ int tripod_3upu_momentum(const prepared *m, const real *X, const real *V, real *
 int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_out)
 {
     static const size_t places_margins[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    real q[NJ] = {0}, margins[NJ] = {0};
+    real q[NJ] CLEARED, margins[NJ] CLEARED;
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -5106,7 +4702,7 @@ int tripod_3upu_joint_margins(const prepared *m, const real *X, real *margins_ou
 
 int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out)
 {
-    real q[NJ] = {0}, subtract_1[NJ] = {0}, within[1] = {0};
+    real q[NJ] CLEARED, subtract_1[NJ] CLEARED, within[1] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -5120,7 +4716,7 @@ int tripod_3upu_within_limits(const prepared *m, const real *X, real *within_out
 
 int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out)
 {
-    real q_of_inverse_kinematics[NJ] = {0}, q[NU] = {0};
+    real q_of_inverse_kinematics[NJ] CLEARED, q[NU] = {0};
     status_flags why;
     start(1, &why);
     check_one(NQ, X, why.invalid);
@@ -5131,7 +4727,7 @@ int tripod_3upu_actuator_positions(const prepared *m, const real *X, real *q_out
 
 int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, real *qd_out)
 {
-    real qd_of_joint_rates[NJ] = {0}, qd[NU] = {0};
+    real qd_of_joint_rates[NJ] CLEARED, qd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, V, why.invalid);
@@ -5143,7 +4739,7 @@ int tripod_3upu_actuator_rates(const prepared *m, const real *X, const real *V, 
 int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out)
 {
-    real qdd_of_joint_accelerations[NJ] = {0}, qdd[NU] = {0};
+    real qdd_of_joint_accelerations[NJ] CLEARED, qdd[NU] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NV, A, why.invalid);
@@ -5155,7 +4751,7 @@ int tripod_3upu_actuator_accelerations(const prepared *m, const real *X, const r
 int tripod_3upu_power(const prepared *m, const real *X, const real *V, const real *tau, real
     *power_out)
 {
-    real H[NV*NU] = {0}, times_1[NV] = {0}, power[1] = {0};
+    real H[NV*NU] CLEARED, times_1[NV] = {0}, power[1] = {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X, NV, V, NU, tau, why.invalid);
@@ -5215,7 +4811,7 @@ int tripod_3upu_pose_from_rpy(const real *t, const real *rpy, real *X_out)
 
 int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
 {
-    real turn_quaternion_1[4] = {0}, add_1[3] = {0}, X_moved[NQ] = {0};
+    real turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X_moved[NQ] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X, NV, step, why.invalid);
@@ -5231,7 +4827,7 @@ int tripod_3upu_retract(const real *X, const real *step, real *X_moved_out)
 
 int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
 {
-    real turn_between_1[3] = {0}, subtract_1[3] = {0}, step[NV] = {0};
+    real turn_between_1[3] = {0}, subtract_1[3] CLEARED, step[NV] = {0};
     status_flags why;
     start(1, &why);
     check_two(NQ, X0, NQ, X1, why.invalid);
@@ -5247,7 +4843,8 @@ int tripod_3upu_difference(const real *X0, const real *X1, real *step_out)
 
 int tripod_3upu_interpolate(const real *X0, const real *X1, const real *s, real *X_out)
 {
-    real join_1[6] = {0}, scale_1[6] = {0}, turn_quaternion_1[4] = {0}, add_1[3] = {0}, X[NQ] = {0};
+    real join_1[6] = {0}, scale_1[6] CLEARED, turn_quaternion_1[4] = {0}, add_1[3] CLEARED, X[NQ] =
+        {0};
     status_flags why;
     start(1, &why);
     check_three(NQ, X0, NQ, X1, 1, s, why.invalid);

@@ -116,7 +116,7 @@ typedef struct {
             upu_platform_point_z[4], upu_potential_t[4], upu_potential_t_2[4], upu_potential_t_3[4];
     tripod_3upu_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
-            J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
             b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
             h_star_in_platform_y, h_star_in_platform_z, legs_size, platform_mass, spread_t;
 } tripod_3upu_model;
@@ -135,13 +135,13 @@ extern const char *const tripod_3upu_ACTUATOR_NAMES[TRIPOD_3UPU_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model);
 
-/* Inertia matrix M. 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 441 mul, 372 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *M);
 size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 858 mul, 624 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
-   Out: Z (NV). */
+/* Velocity and gravity terms Z. 579 mul, 441 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+   Z (NV). */
 int tripod_3upu_Z(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *Z);
 size_t tripod_3upu_Z_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
@@ -167,7 +167,7 @@ int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_re
 size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 498 mul, 318 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 465 mul, 297 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int tripod_3upu_constraint_bias(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *bias);
@@ -181,14 +181,14 @@ int tripod_3upu_inverse_kinematics(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of all joints. 369 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 201 mul, 132 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3upu_joint_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of all joints. 555 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 303 mul, 204 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3upu_joint_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);
@@ -196,15 +196,15 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1584 mul, 1131 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
-   V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+/* M, Z and H together, sharing the work. 1104 mul, 867 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
+   (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H);
 size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real
     *X, const tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 945 mul, 708 add, 12 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 795 mul, 597 add, 9 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tripod_3upu_inverse_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -214,9 +214,9 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1584 mul, 1131 add, 12 div, 6
-   sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
-   (NW, or NULL). Out: A (NV), lambda (NC). */
+/* Acceleration A under the actuator forces tau and the wrench. 1104 mul, 867 add, 9 div, 6 sqrt,
+   0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
+   or NULL). Out: A (NV), lambda (NC). */
 int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, const tripod_3upu_real *tau, const tripod_3upu_real *wrench,
     tripod_3upu_real *A, tripod_3upu_real *lambda);
@@ -235,7 +235,7 @@ size_t tripod_3upu_complete_acceleration_batch(const tripod_3upu_model *model, s
     tripod_3upu_real *wrench, tripod_3upu_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 804 mul, 573 add, 12 div, 6 sqrt, 0 trig; inverse dynamics
+   give the forces of inverse_dynamics. 663 mul, 477 add, 9 div, 6 sqrt, 0 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 6). */
 int tripod_3upu_leg_reactions(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, const tripod_3upu_real *A, const tripod_3upu_real *wrench,
@@ -255,7 +255,7 @@ size_t tripod_3upu_energy_batch(const tripod_3upu_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 379 mul, 249 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 376 mul, 246 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int tripod_3upu_condition(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *sigma, tripod_3upu_real *legs);
@@ -264,7 +264,7 @@ size_t tripod_3upu_condition_batch(const tripod_3upu_model *model, size_t n, con
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 379 mul, 249 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   the legs. 376 mul, 246 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int tripod_3upu_condition_constrained(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *sigma, tripod_3upu_real *legs);
@@ -273,15 +273,15 @@ size_t tripod_3upu_condition_constrained_batch(const tripod_3upu_model *model, s
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 379 mul, 249 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 376 mul, 246 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int tripod_3upu_manipulability(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *measure, tripod_3upu_real *isotropy);
 size_t tripod_3upu_manipulability_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *measure, tripod_3upu_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 379
-   mul, 249 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 376
+   mul, 246 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int tripod_3upu_singularity_distance(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *actuators, tripod_3upu_real *legs);
@@ -310,7 +310,7 @@ int tripod_3upu_dissipation(const tripod_3upu_model *model, const tripod_3upu_re
 size_t tripod_3upu_dissipation_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 441 mul, 372 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3upu_momentum(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *momentum);
@@ -338,14 +338,14 @@ int tripod_3upu_actuator_positions(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_actuator_positions_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 369 mul, 237 add, 12 div, 6 sqrt, 0 trig.
-   In: X (NQ), V (NV). Out: rates (NU). */
+/* Rates of the actuated joints, in the order of tau. 201 mul, 132 add, 6 div, 6 sqrt, 0 trig. In:
+   X (NQ), V (NV). Out: rates (NU). */
 int tripod_3upu_actuator_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_actuator_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 555 mul, 375 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 303 mul, 204 add, 6 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tripod_3upu_actuator_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);

@@ -150,9 +150,6 @@ _leg_force_upu = (
     [0, 6, 12],
     [1, 7, 13],
     [2, 8, 14],
-    [3, 9, 15],
-    [4, 10, 16],
-    [5, 11, 17],
 )
 _actuator_upu = (
     [0, 6, 12],
@@ -572,6 +569,7 @@ def _prepare(p):
     J_star_t_6 = 0.5*J_star_t_5
     J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
+    J_star_t_9 = J_star_in_platform_xx + J_star_in_platform_yy + J_star_in_platform_zz
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
@@ -665,9 +663,9 @@ def _prepare(p):
     return {
         "dynamics": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z, platform_mass,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_upu,
         (upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
@@ -687,7 +685,7 @@ def _prepare(p):
         ),
         "M": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x,
                 h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_upu,
@@ -698,17 +696,15 @@ def _prepare(p):
                     upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
                     upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2,
                     upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
-                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
-                    upu_platform_point_y, upu_platform_point_z,),
+                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
         (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
-                J_star_in_platform_yz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
-                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
-                h_star_in_platform_z,),
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2,
+                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_upu,
         (upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
@@ -719,9 +715,7 @@ def _prepare(p):
                     upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
                     upu_branch_2, upu_h_2_in_spec2_x, upu_h_2_in_spec2_y, upu_h_2_in_spec2_z,
                     upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
-                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
-                    upu_platform_point_y, upu_platform_point_z,),
+                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
@@ -803,9 +797,8 @@ def _prepare(p):
         (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
                     upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
                     upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
+                    upu_branch_1, upu_branch_2, upu_platform_point_x, upu_platform_point_y,
+                    upu_platform_point_z,),
                 ),
             ),
         ),
@@ -816,9 +809,8 @@ def _prepare(p):
         (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
                     upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
                     upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-                    upu_branch_1, upu_branch_2, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
+                    upu_branch_1, upu_branch_2, upu_platform_point_x, upu_platform_point_y,
+                    upu_platform_point_z,),
                 ),
             ),
         ),
@@ -1872,14 +1864,15 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1584 mul, 1131 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1104 mul, 867 add, 9 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1946,15 +1939,14 @@ def _run_dynamics(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -2064,10 +2056,6 @@ def _run_dynamics(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -2093,7 +2081,6 @@ def _run_dynamics(m, X, V):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -2106,27 +2093,17 @@ def _run_dynamics(m, X, V):
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
+        )
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
-        # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
-        upu_m1_w_1_t = upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_in_axes2_x = upu_end_p1_in_axes2_y*upu_m1_w_1_t
-        upu_o_1_t = upu_m1_w_1_t*upu_n_m1_in_axes2_y
-        # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
-        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -2139,7 +2116,9 @@ def _run_dynamics(m, X, V):
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
-        upu_W_2_t = upu_qd_2*upu_qd_2
+        upu_W_2_t = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_W_2_t_2 = upu_qd_2*upu_qd_2
+        upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
         upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-u_1) centripetal acceleration of the connection point
         upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
@@ -2156,46 +2135,45 @@ def _run_dynamics(m, X, V):
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        )
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        )
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
-        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
         upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_3 = (
+        upu_nu_1_t_2 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
             upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
         # (upu-qdd_1_o) remainder of: acceleration of joint 1
-        upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
+        upu_qdd_1_o = inv_upu_root_1*upu_rel_o_in_axes2_z
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2_t = upu_bias_t*upu_qd_2
-        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
-        upu_dalpha_alpha_1_t = upu_e_1_in_axes2_x*upu_o_1_t
-        upu_dalpha_alpha_1_t_2 = upu_c_2*upu_o_1_in_axes2_x
-        upu_dalpha_alpha_1_in_axes2_yy = upu_c_2*upu_o_1_t
         # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_in_axes2_xz = upu_e_1_in_axes2_x*upu_w_1_in_axes2_z
-        upu_d_alpha_1_t = upu_c_2*upu_w_1_in_axes2_z
+        upu_d_alpha_1_in_axes2_xz = inv_upu_root_1*upu_e_1_in_axes2_x
         # (upu-alpha_1_o) remainder of: angular acceleration of link 1
-        upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
-        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
+        upu_alpha_1_o_in_axes2_x = upu_e_1_in_axes2_x*upu_qdd_1_o
+        upu_alpha_1_o_in_axes2_y = -upu_c_2*upu_qdd_1_o
         # (upu-alpha_2_o) remainder of: angular acceleration of link 2
-        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
         upu_B_2_o_t = (
@@ -2211,11 +2189,6 @@ def _run_dynamics(m, X, V):
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
         upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
         upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
-        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*upu_q_3
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
-        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
         # (upu-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
@@ -2223,162 +2196,90 @@ def _run_dynamics(m, X, V):
         )
         upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_qdd_2_t - upu_g_in_axes2_y
         upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
-        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
         # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         upu_d_phi_3_in_axes2_xy = inv_upu_q_3*upu_h_3_in_spec2_z
+        upu_d_phi_3_in_axes2_yy = inv_upu_q_3*upu_h_3_in_spec2_x
+        # (upu-f_3) inertia force of link 3 less its weight
+        upu_f_3_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_2 = upu_W_2_t_3*upu_h_3_in_spec2_x
+        upu_f_3_t_3 = upu_h_3_in_spec2_z*(upu_W_2_t_2 + upu_f_3_t)
+        upu_f_3_t_4 = upu_h_3_in_spec2_y*(upu_W_2_t + upu_f_3_t)
         # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
-        upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
-        upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
         upu_f_3_o_in_axes2_x = (
         upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_W_2_t +
-            upu_f_3_o_t_2)
+            upu_f_3_t_2 - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
         )
         upu_f_3_o_in_axes2_y = (
-        upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_o_t)
+        upu_f_3_t_3 + upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_y*upu_link3_mass - upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
-            upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
-            upu_f_3_o_t_2)
+            upu_f_3_t_4 - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
-        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
-        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
+        upu_mu_2_t = upu_J_group_2_in_axes2_yz*(upu_W_2_t - upu_W_2_t_2)
+        upu_mu_2_t_2 = upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_W_2_t_2)
+        upu_mu_2_t_3 = upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t)
+        upu_mu_2_t_4 = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_5 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_6 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
-        upu_mu_2_t + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+        upu_mu_2_t + upu_mu_2_t_4 + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_W_2_t) -
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 - upu_mu_2_t_5 -
             upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
-            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - upu_W_2_t) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx -
+            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_o_in_axes2_z = (
-        upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
-            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+        upu_mu_2_t_3 + upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_mu_2_t_3 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t
+            - upu_mu_2_t_6 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy
         )
         # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
-        upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
-        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_dalpha_Gamma_1_in_axes2_x = (
-        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_z) -
-            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_x -
-            upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*upu_link3_mass +
-            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
-            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_z))
-        )
-        upu_dalpha_Gamma_1_in_axes2_y = (
-        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
-            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t) -
-            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
-            - upu_q_3*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z - upu_dalpha_acc_3_t*upu_link3_mass
-            - upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_x))
-        )
         # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_d_Gamma_1_in_axes2_z = (
         upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
-            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z) -
-            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
-            - upu_q_3*(upu_d_acc_3_in_axes2_zz*upu_link3_mass + upu_d_alpha_1_t*upu_h_3_in_spec2_x
-            - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
-        )
-        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
-        upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
-        upu_dalpha_G_in_axes2_yx = (
-        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_y*upu_q_3)
-        )
-        upu_dalpha_G_in_axes2_yy = (
-        inv_upu_q_3*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_q_3 -
-            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
+            upu_h_3_in_spec2_z - inv_upu_q_3*upu_J_group_2_in_axes2_xy) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz - upu_h_3_in_spec2_x -
+            inv_upu_q_3*upu_J_group_2_in_axes2_yy - upu_q_3*(upu_d_phi_3_in_axes2_yy +
+            upu_link3_mass - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
         )
         # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        upu_d_G_in_axes2_zz = inv_upu_root_1*upu_d_Gamma_1_in_axes2_z
+        upu_d_G_in_axes2_yy = (
+        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
+            upu_q_3*(upu_d_phi_3_in_axes2_yy + upu_link3_mass))
+        )
         upu_d_G_in_axes2_yz = (
         inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            inv_upu_q_3*upu_J_group_2_in_axes2_yz -
             upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_q_3)
         )
         # (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t
-        upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t
-        upu_dalpha_G_m1_y = (
-        axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
-        )
-        upu_dalpha_G_m1_z = (
-        axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
-        )
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1_t
-        upu_d_G_m1_t = (
-        upu_m1_w_1_t*(upu_e_1_in_axes2_x*(inv_upu_q_3*upu_J_group_2_in_axes2_xz -
-            upu_h_3_in_spec2_y) - inv_upu_q_3*upu_J_group_2_in_axes2_yz*upu_c_2)
-        )
-        upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t
-        upu_d_G_m1_x = (
-        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_x*upu_d_G_m1_t -
-            axis_z_upu_axes2_x*upu_d_G_m1_t_2
-        )
-        upu_d_G_m1_y = (
-        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_y*upu_d_G_m1_t -
-            axis_z_upu_axes2_y*upu_d_G_m1_t_2
-        )
-        upu_d_G_m1_z = (
-        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_z*upu_d_G_m1_t -
-            axis_z_upu_axes2_z*upu_d_G_m1_t_2
-        )
-        # (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
-        upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
-        upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
-        upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
-        # (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
-        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
         # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
+        upu_d_c_in_axes2_xz = inv_upu_q_3*upu_h_3_in_spec2_y
         # (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
-        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
-        upu_Q_t = (
-        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
-            upu_q_3*(upu_link3_mass + inv_upu_q_3*upu_h_3_in_spec2_x)) - upu_link3_mass
+        upu_c_o_in_axes2_z = (
+        inv_upu_root_1*(upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x)
         )
+        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
+        upu_Q_t = upu_d_G_in_axes2_yy - upu_link3_mass
         upu_Q_t_2 = 0.5*upu_Q_t
-        upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
+        upu_Q_t_3 = upu_d_G_in_axes2_zz - upu_link3_mass
         upu_Q_t_4 = 0.5*upu_Q_t_3
         upu_Q_t_5 = (
         axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_x*upu_Q_t_2 +
@@ -2397,6 +2298,11 @@ def _run_dynamics(m, X, V):
         upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_c_in_axes2_xz
         upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8
         upu_Q_xx = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
+        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
+        upu_Q_zz = (
+        upu_d_G_in_axes2_yy + upu_d_G_in_axes2_zz + upu_link3_mass - upu_Q_xx - upu_Q_yy
+        )
         upu_Q_xy = (
         axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_9
             + axis_z_upu_axes2_y*upu_Q_t_8
@@ -2405,16 +2311,10 @@ def _run_dynamics(m, X, V):
         axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
             axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8
         )
-        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
-        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
         upu_Q_yz = (
         axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
             axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9
         )
-        upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10
-        upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
-        # (upu-c_m_o) remainder of: moment of the leg on the platform without actuation
-        upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
         axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y -
@@ -2429,112 +2329,29 @@ def _run_dynamics(m, X, V):
             axis_z_upu_axes2_z*upu_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
-        upu_M_ta_t = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_2 = (
-        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_3 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_4 = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_5 = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_6 = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_7 = upu_Q_xy*upu_q_z
-        upu_M_ta_t_8 = upu_Q_xz*upu_q_y
-        upu_M_ta_t_9 = upu_Q_yz*upu_q_x
-        upu_M_ta_t_10 = (
-        upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
-            axis_y_upu_axes2_x*upu_M_ta_t_4
-        )
-        upu_M_ta_t_11 = (
-        upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t - axis_y_upu_axes2_y*upu_M_ta_t_4 -
-            upu_Q_xz*upu_q_x
-        )
-        upu_M_ta_t_12 = (
-        upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t - axis_y_upu_axes2_z*upu_M_ta_t_4 -
-            upu_Q_xx*upu_q_y
-        )
-        upu_M_ta_t_13 = (
-        upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 - axis_y_upu_axes2_x*upu_M_ta_t_5 -
-            upu_Q_yy*upu_q_z
-        )
-        upu_M_ta_t_14 = (
-        upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
-            axis_y_upu_axes2_y*upu_M_ta_t_5
-        )
-        upu_M_ta_t_15 = (
-        upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 - axis_y_upu_axes2_z*upu_M_ta_t_5 -
-            upu_Q_xy*upu_q_y
-        )
-        upu_M_ta_t_16 = (
-        upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 - axis_y_upu_axes2_x*upu_M_ta_t_6 -
-            upu_Q_yz*upu_q_z
-        )
-        upu_M_ta_t_17 = (
-        upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 - axis_y_upu_axes2_y*upu_M_ta_t_6 -
-            upu_Q_zz*upu_q_x
-        )
-        upu_M_ta_t_18 = (
-        upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
-            axis_y_upu_axes2_z*upu_M_ta_t_6
-        )
+        upu_M_ta_t = upu_Q_xy*upu_q_z
+        upu_M_ta_t_2 = upu_Q_xz*upu_q_y
+        upu_M_ta_t_3 = upu_M_ta_t_2 - upu_M_ta_t
+        upu_M_ta_t_4 = upu_Q_xx*upu_q_z - upu_Q_xz*upu_q_x
+        upu_M_ta_t_5 = upu_Q_xy*upu_q_x - upu_Q_xx*upu_q_y
+        upu_M_ta_t_6 = upu_Q_yz*upu_q_y - upu_Q_yy*upu_q_z
+        upu_M_ta_t_7 = upu_Q_yz*upu_q_x
+        upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_7
+        upu_M_ta_t_9 = upu_Q_yy*upu_q_x - upu_Q_xy*upu_q_y
+        upu_M_ta_t_10 = upu_Q_zz*upu_q_y - upu_Q_yz*upu_q_z
+        upu_M_ta_t_11 = upu_Q_xz*upu_q_z - upu_Q_zz*upu_q_x
+        upu_M_ta_t_12 = upu_M_ta_t_7 - upu_M_ta_t_2
         # (M_aa) rotational block of M
-        upu_M_aa_t = (
-        upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
-            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
-            upu_d_G_m_xy*upu_q_z
-        )
-        upu_M_aa_t_2 = (
-        upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_x -
-            upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x
-        )
-        upu_M_aa_t_3 = (
-        upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_x -
-            upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y
-        )
-        upu_M_aa_t_4 = (
-        upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_y -
-            upu_M_ta_t_17*upu_q_x - upu_d_G_m1_z*upu_n_m1_y*upu_q_x
-        )
-        upu_M_aa_t_5 = (
-        upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y + upu_d_G_m1_y*upu_n_m1_y*upu_q_x -
-            upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y
-        )
-        upu_M_aa_t_6 = (
-        upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z + upu_d_G_m1_y*upu_n_m1_z*upu_q_x -
-            upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
-        )
+        upu_M_aa_t = upu_M_ta_t_10*upu_q_y - upu_M_ta_t_6*upu_q_z
+        upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_y - upu_M_ta_t_8*upu_q_z
+        upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_y - upu_M_ta_t_9*upu_q_z
+        upu_M_aa_t_4 = upu_M_ta_t_4*upu_q_z - upu_M_ta_t_11*upu_q_x
+        upu_M_aa_t_5 = upu_M_ta_t_5*upu_q_z - upu_M_ta_t_12*upu_q_x
+        upu_M_aa_t_6 = upu_M_ta_t_9*upu_q_x - upu_M_ta_t_5*upu_q_y
         # (Z_a) rotational part of Z
-        upu_Z_a_t = (
-        axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
-            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z
-        )
-        upu_Z_a_t_2 = (
-        axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
-            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x
-        )
-        upu_Z_a_t_3 = (
-        axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
-            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
-        )
+        upu_Z_a_t = upu_U_z*upu_q_y - upu_U_y*upu_q_z
+        upu_Z_a_t_2 = upu_U_x*upu_q_z - upu_U_z*upu_q_x
+        upu_Z_a_t_3 = upu_U_y*upu_q_x - upu_U_x*upu_q_y
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
         upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
@@ -2547,9 +2364,9 @@ def _run_dynamics(m, X, V):
         upu_gamma_c1 = upu_nu_1 + upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (M_tt) translational block of M
         M_tt_upu_xx += upu_Q_xx
@@ -2559,15 +2376,15 @@ def _run_dynamics(m, X, V):
         M_tt_yz += upu_Q_yz
         M_tt_upu_zz += upu_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += upu_M_ta_t_10
-        M_ta_upu_xy += upu_M_ta_t_11
-        M_ta_upu_xz += upu_M_ta_t_12
-        M_ta_upu_yx += upu_M_ta_t_13
-        M_ta_yy += upu_M_ta_t_14
-        M_ta_upu_yz += upu_M_ta_t_15
-        M_ta_upu_zx += upu_M_ta_t_16
-        M_ta_upu_zy += upu_M_ta_t_17
-        M_ta_zz += upu_M_ta_t_18
+        M_ta_xx += upu_M_ta_t_3
+        M_ta_upu_xy += upu_M_ta_t_4
+        M_ta_upu_xz += upu_M_ta_t_5
+        M_ta_upu_yx += upu_M_ta_t_6
+        M_ta_yy += upu_M_ta_t_8
+        M_ta_upu_yz += upu_M_ta_t_9
+        M_ta_upu_zx += upu_M_ta_t_10
+        M_ta_upu_zy += upu_M_ta_t_11
+        M_ta_zz += upu_M_ta_t_12
         # (M_aa) rotational block of M
         M_aa_upu_xx += upu_M_aa_t
         M_aa_upu_xy += upu_M_aa_t_2
@@ -2677,14 +2494,14 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 1032 mul, 699 add, 12 div, 6 sqrt, 0 trig
+# M: 441 mul, 372 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
-        platform_mass,
+        J_star_t_6, J_star_t_8, J_star_t_9, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2734,15 +2551,14 @@ def _run_M(m, X):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     (
     M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
         M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
@@ -2756,9 +2572,7 @@ def _run_M(m, X):
             upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
             upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
             upu_branch_2, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z,
-            upu_link3_mass, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+            upu_link3_mass, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
         upu_q_x = (
@@ -2825,166 +2639,36 @@ def _run_M(m, X):
         axis_x_upu_axes2_z = (
         axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         )
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_t = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
-            R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
-            R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
-            R_zz*upu_base_frame_zx)
-        )
-        upu_n_m1_t_2 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
-            R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
-            R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
-            R_zz*upu_base_frame_zy)
-        )
-        upu_n_m1_t_3 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
-            R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
-            R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
-            R_zz*upu_base_frame_zz)
-        )
-        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
-        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
-        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        upu_n_m1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
-        )
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_q_3*upu_root_1
-        # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
-        # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
-        upu_m1_w_1_t = upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_in_axes2_x = upu_end_p1_in_axes2_y*upu_m1_w_1_t
-        upu_o_1_t = upu_m1_w_1_t*upu_n_m1_in_axes2_y
-        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
-        upu_dalpha_alpha_1_t = upu_e_1_in_axes2_x*upu_o_1_t
-        upu_dalpha_alpha_1_t_2 = upu_c_2*upu_o_1_in_axes2_x
-        upu_dalpha_alpha_1_in_axes2_yy = upu_c_2*upu_o_1_t
         # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_in_axes2_xz = upu_e_1_in_axes2_x*upu_w_1_in_axes2_z
-        upu_d_alpha_1_t = upu_c_2*upu_w_1_in_axes2_z
-        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*upu_q_3
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
-        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
-        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
+        upu_d_alpha_1_in_axes2_xz = inv_upu_root_1*upu_e_1_in_axes2_x
         # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
         upu_d_phi_3_in_axes2_xy = inv_upu_q_3*upu_h_3_in_spec2_z
-        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_dalpha_Gamma_1_in_axes2_x = (
-        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_z) -
-            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_x -
-            upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*upu_link3_mass +
-            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
-            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_z))
-        )
-        upu_dalpha_Gamma_1_in_axes2_y = (
-        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
-            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t) -
-            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
-            - upu_q_3*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z - upu_dalpha_acc_3_t*upu_link3_mass
-            - upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_x))
-        )
+        upu_d_phi_3_in_axes2_yy = inv_upu_q_3*upu_h_3_in_spec2_x
         # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_d_Gamma_1_in_axes2_z = (
         upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
-            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z) -
-            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
-            - upu_q_3*(upu_d_acc_3_in_axes2_zz*upu_link3_mass + upu_d_alpha_1_t*upu_h_3_in_spec2_x
-            - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
-        )
-        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
-        upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
-        upu_dalpha_G_in_axes2_yx = (
-        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xx -
-            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_y*upu_q_3)
-        )
-        upu_dalpha_G_in_axes2_yy = (
-        inv_upu_q_3*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yy +
-            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_q_3 -
-            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
+            upu_h_3_in_spec2_z - inv_upu_q_3*upu_J_group_2_in_axes2_xy) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz - upu_h_3_in_spec2_x -
+            inv_upu_q_3*upu_J_group_2_in_axes2_yy - upu_q_3*(upu_d_phi_3_in_axes2_yy +
+            upu_link3_mass - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
         )
         # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
+        upu_d_G_in_axes2_zz = inv_upu_root_1*upu_d_Gamma_1_in_axes2_z
+        upu_d_G_in_axes2_yy = (
+        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
+            upu_q_3*(upu_d_phi_3_in_axes2_yy + upu_link3_mass))
+        )
         upu_d_G_in_axes2_yz = (
         inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            inv_upu_q_3*upu_J_group_2_in_axes2_yz -
             upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_q_3)
         )
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t
-        upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t
-        upu_dalpha_G_m1_y = (
-        axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
-        )
-        upu_dalpha_G_m1_z = (
-        axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
-        )
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1_t
-        upu_d_G_m1_t = (
-        upu_m1_w_1_t*(upu_e_1_in_axes2_x*(inv_upu_q_3*upu_J_group_2_in_axes2_xz -
-            upu_h_3_in_spec2_y) - inv_upu_q_3*upu_J_group_2_in_axes2_yz*upu_c_2)
-        )
-        upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t
-        upu_d_G_m1_x = (
-        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_x*upu_d_G_m1_t -
-            axis_z_upu_axes2_x*upu_d_G_m1_t_2
-        )
-        upu_d_G_m1_y = (
-        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_y*upu_d_G_m1_t -
-            axis_z_upu_axes2_y*upu_d_G_m1_t_2
-        )
-        upu_d_G_m1_z = (
-        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_z*upu_d_G_m1_t -
-            axis_z_upu_axes2_z*upu_d_G_m1_t_2
-        )
-        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
-        upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
-        upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
-        upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
-        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
         # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
+        upu_d_c_in_axes2_xz = inv_upu_q_3*upu_h_3_in_spec2_y
         # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
-        upu_Q_t = (
-        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
-            upu_q_3*(upu_link3_mass + inv_upu_q_3*upu_h_3_in_spec2_x)) - upu_link3_mass
-        )
+        upu_Q_t = upu_d_G_in_axes2_yy - upu_link3_mass
         upu_Q_t_2 = 0.5*upu_Q_t
-        upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
+        upu_Q_t_3 = upu_d_G_in_axes2_zz - upu_link3_mass
         upu_Q_t_4 = 0.5*upu_Q_t_3
         upu_Q_t_5 = (
         axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_x*upu_Q_t_2 +
@@ -3003,6 +2687,11 @@ def _run_M(m, X):
         upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_c_in_axes2_xz
         upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8
         upu_Q_xx = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
+        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
+        upu_Q_zz = (
+        upu_d_G_in_axes2_yy + upu_d_G_in_axes2_zz + upu_link3_mass - upu_Q_xx - upu_Q_yy
+        )
         upu_Q_xy = (
         axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_9
             + axis_z_upu_axes2_y*upu_Q_t_8
@@ -3011,113 +2700,34 @@ def _run_M(m, X):
         axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
             axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8
         )
-        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
-        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
         upu_Q_yz = (
         axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
             axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9
         )
-        upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10
-        upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
         # (M_ta) coupling block of M
-        upu_M_ta_t = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_2 = (
-        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_3 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx
-            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
-        )
-        upu_M_ta_t_4 = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_5 = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_6 = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
-            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
-            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
-        )
-        upu_M_ta_t_7 = upu_Q_xy*upu_q_z
-        upu_M_ta_t_8 = upu_Q_xz*upu_q_y
-        upu_M_ta_t_9 = upu_Q_yz*upu_q_x
-        upu_M_ta_t_10 = (
-        upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
-            axis_y_upu_axes2_x*upu_M_ta_t_4
-        )
-        upu_M_ta_t_11 = (
-        upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t - axis_y_upu_axes2_y*upu_M_ta_t_4 -
-            upu_Q_xz*upu_q_x
-        )
-        upu_M_ta_t_12 = (
-        upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t - axis_y_upu_axes2_z*upu_M_ta_t_4 -
-            upu_Q_xx*upu_q_y
-        )
-        upu_M_ta_t_13 = (
-        upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 - axis_y_upu_axes2_x*upu_M_ta_t_5 -
-            upu_Q_yy*upu_q_z
-        )
-        upu_M_ta_t_14 = (
-        upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
-            axis_y_upu_axes2_y*upu_M_ta_t_5
-        )
-        upu_M_ta_t_15 = (
-        upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 - axis_y_upu_axes2_z*upu_M_ta_t_5 -
-            upu_Q_xy*upu_q_y
-        )
-        upu_M_ta_t_16 = (
-        upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 - axis_y_upu_axes2_x*upu_M_ta_t_6 -
-            upu_Q_yz*upu_q_z
-        )
-        upu_M_ta_t_17 = (
-        upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 - axis_y_upu_axes2_y*upu_M_ta_t_6 -
-            upu_Q_zz*upu_q_x
-        )
-        upu_M_ta_t_18 = (
-        upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
-            axis_y_upu_axes2_z*upu_M_ta_t_6
-        )
+        upu_M_ta_t = upu_Q_xy*upu_q_z
+        upu_M_ta_t_2 = upu_Q_xz*upu_q_y
+        upu_M_ta_t_3 = upu_M_ta_t_2 - upu_M_ta_t
+        upu_M_ta_t_4 = upu_Q_xx*upu_q_z - upu_Q_xz*upu_q_x
+        upu_M_ta_t_5 = upu_Q_xy*upu_q_x - upu_Q_xx*upu_q_y
+        upu_M_ta_t_6 = upu_Q_yz*upu_q_y - upu_Q_yy*upu_q_z
+        upu_M_ta_t_7 = upu_Q_yz*upu_q_x
+        upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_7
+        upu_M_ta_t_9 = upu_Q_yy*upu_q_x - upu_Q_xy*upu_q_y
+        upu_M_ta_t_10 = upu_Q_zz*upu_q_y - upu_Q_yz*upu_q_z
+        upu_M_ta_t_11 = upu_Q_xz*upu_q_z - upu_Q_zz*upu_q_x
+        upu_M_ta_t_12 = upu_M_ta_t_7 - upu_M_ta_t_2
         # (M_aa) rotational block of M
-        upu_M_aa_t = (
-        upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
-            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
-            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
-            upu_d_G_m_xy*upu_q_z
-        )
-        upu_M_aa_t_2 = (
-        upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_x -
-            upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x
-        )
-        upu_M_aa_t_3 = (
-        upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_x -
-            upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y
-        )
-        upu_M_aa_t_4 = (
-        upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_y -
-            upu_M_ta_t_17*upu_q_x - upu_d_G_m1_z*upu_n_m1_y*upu_q_x
-        )
-        upu_M_aa_t_5 = (
-        upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y + upu_d_G_m1_y*upu_n_m1_y*upu_q_x -
-            upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y
-        )
-        upu_M_aa_t_6 = (
-        upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z + upu_d_G_m1_y*upu_n_m1_z*upu_q_x -
-            upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
-        )
+        upu_M_aa_t = upu_M_ta_t_10*upu_q_y - upu_M_ta_t_6*upu_q_z
+        upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_y - upu_M_ta_t_8*upu_q_z
+        upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_y - upu_M_ta_t_9*upu_q_z
+        upu_M_aa_t_4 = upu_M_ta_t_4*upu_q_z - upu_M_ta_t_11*upu_q_x
+        upu_M_aa_t_5 = upu_M_ta_t_5*upu_q_z - upu_M_ta_t_12*upu_q_x
+        upu_M_aa_t_6 = upu_M_ta_t_9*upu_q_x - upu_M_ta_t_5*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_upu_xx += upu_Q_xx
@@ -3127,15 +2737,15 @@ def _run_M(m, X):
         M_tt_yz += upu_Q_yz
         M_tt_upu_zz += upu_Q_zz
         # (M_ta) coupling block of M
-        M_ta_xx += upu_M_ta_t_10
-        M_ta_upu_xy += upu_M_ta_t_11
-        M_ta_upu_xz += upu_M_ta_t_12
-        M_ta_upu_yx += upu_M_ta_t_13
-        M_ta_yy += upu_M_ta_t_14
-        M_ta_upu_yz += upu_M_ta_t_15
-        M_ta_upu_zx += upu_M_ta_t_16
-        M_ta_upu_zy += upu_M_ta_t_17
-        M_ta_zz += upu_M_ta_t_18
+        M_ta_xx += upu_M_ta_t_3
+        M_ta_upu_xy += upu_M_ta_t_4
+        M_ta_upu_xz += upu_M_ta_t_5
+        M_ta_upu_yx += upu_M_ta_t_6
+        M_ta_yy += upu_M_ta_t_8
+        M_ta_upu_yz += upu_M_ta_t_9
+        M_ta_upu_zx += upu_M_ta_t_10
+        M_ta_upu_zy += upu_M_ta_t_11
+        M_ta_zz += upu_M_ta_t_12
         # (M_aa) rotational block of M
         M_aa_upu_xx += upu_M_aa_t
         M_aa_upu_xy += upu_M_aa_t_2
@@ -3203,14 +2813,14 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 858 mul, 624 add, 12 div, 6 sqrt, 0 trig
+# Z: 579 mul, 441 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
     J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
-        J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
-        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        J_star_t_6, J_star_t_8, J_star_t_9, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y,
+        gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3273,15 +2883,14 @@ def _run_Z(m, X, V):
     J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
     J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
     J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
-    J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_t_10 = J_star_t*R_xy - J_star_t_4*R_xz
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_11
+    J_star_zz = J_star_t_9 - J_star_xx - J_star_yy
     J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
     Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
     Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
@@ -3306,9 +2915,8 @@ def _run_Z(m, X, V):
             upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
             upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
             upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
-            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
-            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_point_x, upu_platform_point_y,
+            upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
         upu_q_x = (
@@ -3385,61 +2993,10 @@ def _run_Z(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_t = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
-            R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
-            R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
-            R_zz*upu_base_frame_zx)
-        )
-        upu_n_m1_t_2 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
-            R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
-            R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
-            R_zz*upu_base_frame_zy)
-        )
-        upu_n_m1_t_3 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
-            R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
-            R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
-            R_zz*upu_base_frame_zz)
-        )
-        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
-        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
-        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        upu_n_m1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
-        )
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_q_3*upu_root_1
-        # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
-        # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
-        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -3452,7 +3009,9 @@ def _run_Z(m, X, V):
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
-        upu_W_2_t = upu_qd_2*upu_qd_2
+        upu_W_2_t = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_W_2_t_2 = upu_qd_2*upu_qd_2
+        upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
         upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-u_1) centripetal acceleration of the connection point
         upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
@@ -3467,40 +3026,15 @@ def _run_Z(m, X, V):
         axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
             - upu_bias_in_axes2_z
         )
-        # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_z = (
-        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
-        )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
-        )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
-        )
-        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
-        # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = (
-        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
-        )
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_3 = (
-        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
-            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
-        )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
         # (upu-qdd_1_o) remainder of: acceleration of joint 1
-        upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
+        upu_qdd_1_o = inv_upu_root_1*upu_rel_o_in_axes2_z
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2_t = upu_bias_t*upu_qd_2
         # (upu-alpha_1_o) remainder of: angular acceleration of link 1
-        upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
-        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
+        upu_alpha_1_o_in_axes2_x = upu_e_1_in_axes2_x*upu_qdd_1_o
+        upu_alpha_1_o_in_axes2_y = -upu_c_2*upu_qdd_1_o
         # (upu-alpha_2_o) remainder of: angular acceleration of link 2
-        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
         upu_B_2_o_t = (
@@ -3523,64 +3057,62 @@ def _run_Z(m, X, V):
         )
         upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_qdd_2_t - upu_g_in_axes2_y
         upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
+        # (upu-f_3) inertia force of link 3 less its weight
+        upu_f_3_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_2 = upu_W_2_t_3*upu_h_3_in_spec2_x
+        upu_f_3_t_3 = upu_h_3_in_spec2_z*(upu_W_2_t_2 + upu_f_3_t)
+        upu_f_3_t_4 = upu_h_3_in_spec2_y*(upu_W_2_t + upu_f_3_t)
         # (upu-f_3_o) remainder of: inertia force of link 3 less its weight
-        upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
-        upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
         upu_f_3_o_in_axes2_x = (
         upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_W_2_t +
-            upu_f_3_o_t_2)
+            upu_f_3_t_2 - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
         )
         upu_f_3_o_in_axes2_y = (
-        upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_o_t)
+        upu_f_3_t_3 + upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_y*upu_link3_mass - upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
-            upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
-            upu_f_3_o_t_2)
+            upu_f_3_t_4 - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
-        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
-        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
+        upu_mu_2_t = upu_J_group_2_in_axes2_yz*(upu_W_2_t - upu_W_2_t_2)
+        upu_mu_2_t_2 = upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_W_2_t_2)
+        upu_mu_2_t_3 = upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t)
+        upu_mu_2_t_4 = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_5 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_6 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         # (upu-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_o_in_axes2_x = (
-        upu_mu_2_t + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+        upu_mu_2_t + upu_mu_2_t_4 + upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_W_2_t) -
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
             upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
-            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 - upu_mu_2_t_5 -
             upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
-            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
-            - upu_W_2_t) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx -
+            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_o_in_axes2_z = (
-        upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
-            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+        upu_mu_2_t_3 + upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_mu_2_t_3 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
-            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t
+            - upu_mu_2_t_6 - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy
         )
         # (upu-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
-        upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
         # (upu-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
-        # (upu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
         # (upu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
-        # (upu-c_m_o) remainder of: moment of the leg on the platform without actuation
-        upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
+        upu_c_o_in_axes2_z = (
+        inv_upu_root_1*(upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x)
+        )
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
         axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y -
@@ -3595,23 +3127,13 @@ def _run_Z(m, X, V):
             axis_z_upu_axes2_z*upu_c_o_in_axes2_z
         )
         # (Z_a) rotational part of Z
-        upu_Z_a_t = (
-        axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
-            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z
-        )
-        upu_Z_a_t_2 = (
-        axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
-            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x
-        )
-        upu_Z_a_t_3 = (
-        axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
-            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
-        )
+        upu_Z_a_t = upu_U_z*upu_q_y - upu_U_y*upu_q_z
+        upu_Z_a_t_2 = upu_U_x*upu_q_z - upu_U_z*upu_q_x
+        upu_Z_a_t_3 = upu_U_y*upu_q_x - upu_U_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_upu_x += upu_U_x
@@ -3759,7 +3281,8 @@ def _run_H(m, X):
         upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8)
         )
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
@@ -3912,7 +3435,6 @@ def _run_Hk(m, X):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -3925,7 +3447,10 @@ def _run_Hk(m, X):
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
+        )
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
@@ -3935,8 +3460,9 @@ def _run_Hk(m, X):
         upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
         out_Hk[_Hk_upu[0][leg]] = upu_n_c_x
@@ -3949,7 +3475,7 @@ def _run_Hk(m, X):
     return ok, (out_Hk,)
 
 
-# constraint_bias: 498 mul, 318 add, 12 div, 6 sqrt, 0 trig
+# constraint_bias: 465 mul, 297 add, 9 div, 6 sqrt, 0 trig
 def _run_constraint_bias(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("constraint_bias")
@@ -4087,10 +3613,6 @@ def _run_constraint_bias(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -4116,32 +3638,17 @@ def _run_constraint_bias(m, X, V):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        upu_n_m1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
-        )
-        upu_n_m1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
-        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
-        # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
-        # (upu-qd_1) rate of joint 1
-        upu_qd_1 = upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z - upu_eta_1*upu_n_c_in_axes2_z)
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
         )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -4169,43 +3676,48 @@ def _run_constraint_bias(m, X, V):
         )
         # (upu-nd_m1) rate of moment direction 1
         upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
+        upu_omega_in_axes2_x = (
+        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+        )
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+        )
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
-        upu_nd_m1_in_axes2_x = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
-        upu_nd_m1_in_axes2_y = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
         upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_3 = (
+        upu_nu_1_t_2 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
             upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_3
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         upu_gamma_c1 = upu_nu_1 + upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
     return ok, (out_constraint_bias,)
 
 
-# required: 945 mul, 708 add, 12 div, 6 sqrt, 0 trig
+# required: 795 mul, 597 add, 9 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -4304,9 +3816,6 @@ def _run_required(m, X, V, A):
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
-    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
     f_p_x = B_p_xy*h_star_y + B_p_xz*h_star_z + a_t_x*platform_mass - W_p_t_4*h_star_x
     f_p_y = B_p_yx*h_star_x + B_p_yz*h_star_z + a_t_y*platform_mass - W_p_t_5*h_star_y
@@ -4330,27 +3839,24 @@ def _run_required(m, X, V, A):
     alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
     alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
     alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_in_platform_x = (
+    mu_p_t_4 = (
     J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
-        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
-        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        J_star_in_platform_xz*alpha_in_platform_z + mu_p_t_3*omega_in_platform_y -
         mu_p_t_2*omega_in_platform_z
     )
-    mu_p_in_platform_y = (
+    mu_p_t_5 = (
     J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
-        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
-        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        J_star_in_platform_yz*alpha_in_platform_z + mu_p_t*omega_in_platform_z -
         mu_p_t_3*omega_in_platform_x
     )
-    mu_p_in_platform_z = (
+    mu_p_t_6 = (
     J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
-        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
-        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        J_star_in_platform_zz*alpha_in_platform_z + mu_p_t_2*omega_in_platform_x -
         mu_p_t*omega_in_platform_y
     )
-    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
-    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
-    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
+    mu_p_x = R_xx*mu_p_t_4 + R_xy*mu_p_t_5 + R_xz*mu_p_t_6 + a_t_z*h_star_y - a_t_y*h_star_z
+    mu_p_y = R_yx*mu_p_t_4 + R_yy*mu_p_t_5 + R_yz*mu_p_t_6 + a_t_x*h_star_z - a_t_z*h_star_x
+    mu_p_z = R_zx*mu_p_t_4 + R_zy*mu_p_t_5 + R_zz*mu_p_t_6 + a_t_y*h_star_x - a_t_x*h_star_y
     R_t_t, R_t_t_2, R_t_t_3, R_a_upu_x, R_a_upu_y, R_a_upu_z = [0.0] * 6
     for leg, k in legs[0]:
         (
@@ -4440,10 +3946,6 @@ def _run_required(m, X, V, A):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -4469,7 +3971,6 @@ def _run_required(m, X, V, A):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -4482,24 +3983,17 @@ def _run_required(m, X, V, A):
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
+        )
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
-        upu_qd_1_2 = (
-        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
-            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
-            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -4507,15 +4001,15 @@ def _run_required(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
-        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_qd_2*upu_qd_2
-        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
-        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
-        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_t = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_W_2_t_2 = upu_qd_2*upu_qd_2
         upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
-        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-S_ddot) acceleration of the connection point
         upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
         upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
@@ -4526,47 +4020,15 @@ def _run_required(m, X, V, A):
         )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
-        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
-        # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_z = (
-        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
-        )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
-        )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
-        )
-        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
-        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
-        # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_4 = (
-        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
-        )
-        upu_nu_1_t_5 = (
-        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
-            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
-        )
-        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
-        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
-        upu_etad_1_t = (
-        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
-            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
-        )
-        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
+        upu_qdd_1 = inv_upu_root_1*upu_rel_in_axes2_z
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2_t = upu_bias_t*upu_qd_2
         upu_qdd_2_t_2 = (
@@ -4574,17 +4036,17 @@ def _run_required(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
         )
         upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
-        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
-        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
+        upu_alpha_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qdd_1
+        upu_alpha_1_in_axes2_y = -upu_c_2*upu_qdd_1
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz_2 - upu_alpha_1_t
-        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz_2
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy_2 - upu_qdd_2
-        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y
-        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x
+        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy - upu_qdd_2
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
         upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
@@ -4592,57 +4054,60 @@ def _run_required(m, X, V, A):
         upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_in_axes2_x = upu_S_ddot_in_axes2_x - upu_g_in_axes2_x
         upu_acc_3_in_axes2_y = upu_qdd_2_t + upu_qdd_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_3 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_t = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_x_2
+        upu_f_3_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_2 = upu_W_2_t_3*upu_h_3_in_spec2_x
+        upu_f_3_t_3 = upu_h_3_in_spec2_z*(upu_W_2_t_2 + upu_f_3_t)
+        upu_f_3_t_4 = upu_h_3_in_spec2_y*(upu_W_2_t + upu_f_3_t)
         upu_f_3_in_axes2_x = (
         upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_W_2_t_3*upu_h_3_in_spec2_x
+            upu_f_3_t_2 - upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z
         )
         upu_f_3_in_axes2_y = (
-        upu_acc_3_in_axes2_y*upu_link3_mass + upu_alpha_1_t*upu_h_3_in_spec2_y +
-            upu_h_3_in_spec2_x*upu_qdd_2_t_3 + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_t)
+        upu_f_3_t_3 + upu_acc_3_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_x*upu_qdd_2_t_3 -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
         )
         upu_f_3_in_axes2_z = (
-        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
-            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_W_2_t_2 + upu_f_3_t)
+        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass - upu_f_3_t_4
+            - upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
-        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
-        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
+        upu_mu_2_t = upu_J_group_2_in_axes2_yz*(upu_W_2_t - upu_W_2_t_2)
+        upu_mu_2_t_2 = upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_W_2_t_2)
+        upu_mu_2_t_3 = upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t)
+        upu_mu_2_t_4 = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_5 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_6 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         upu_mu_2_in_axes2_x = (
-        upu_mu_2_t + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 -
-            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy - upu_J_group_2_in_axes2_yz*(upu_W_2_t -
-            upu_W_2_t_2) - upu_Sigma_2_in_axes2_zz*upu_alpha_1_t -
+        upu_mu_2_t + upu_mu_2_t_4 + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x -
+            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
-        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_W_2_t -
-            upu_f_3_t) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 - upu_mu_2_t_5 -
             upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_in_axes2_z = (
-        upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t_2) +
+        upu_mu_2_t_3 + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
             upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
             upu_Sigma_2_in_axes2_xx*upu_qdd_2_t_3 + upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z +
-            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_3 -
-            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_6 -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
-        upu_N_2_t = upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_q_3*upu_mu_2_in_axes2_z
-        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1 = upu_N_2_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
-        upu_c_in_axes2_z = upu_N_2_t*upu_w_1_in_axes2_z
+        upu_c_in_axes2_z = (
+        inv_upu_root_1*(upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x)
+        )
         upu_c_x = (
         axis_z_upu_axes2_x*upu_c_in_axes2_z - axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
             axis_y_upu_axes2_x*upu_G_in_axes2_y
@@ -4655,15 +4120,10 @@ def _run_required(m, X, V, A):
         axis_z_upu_axes2_z*upu_c_in_axes2_z - axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
             axis_y_upu_axes2_z*upu_G_in_axes2_y
         )
-        # (upu-c_m) moment of the leg on the platform without actuation
-        upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
-        upu_c_m_x = axis_x_upu_axes2_x*upu_c_m_in_axes2_x - axis_y_upu_axes2_x*upu_G_m_in_axes2_y
-        upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
-        upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         # (R_a) moment that actuators and external wrench must give
-        upu_R_a_t = upu_c_y*upu_q_z - upu_c_m_x - upu_c_z*upu_q_y
-        upu_R_a_t_2 = upu_c_z*upu_q_x - upu_c_m_y - upu_c_x*upu_q_z
-        upu_R_a_t_3 = upu_c_x*upu_q_y - upu_c_m_z - upu_c_y*upu_q_x
+        upu_R_a_t = upu_c_y*upu_q_z - upu_c_z*upu_q_y
+        upu_R_a_t_2 = upu_c_z*upu_q_x - upu_c_x*upu_q_z
+        upu_R_a_t_3 = upu_c_x*upu_q_y - upu_c_y*upu_q_x
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
         upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
@@ -4674,9 +4134,9 @@ def _run_required(m, X, V, A):
         upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += upu_c_x
@@ -4824,7 +4284,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 369 mul, 237 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 201 mul, 132 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4883,9 +4343,7 @@ def _run_joint_rates(m, X, V):
         upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
             upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
             upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
-            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+            upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
         upu_q_x = (
@@ -4962,54 +4420,10 @@ def _run_joint_rates(m, X, V):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_t = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
-            R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
-            R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
-            R_zz*upu_base_frame_zx)
-        )
-        upu_n_m1_t_2 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
-            R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
-            R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
-            R_zz*upu_base_frame_zy)
-        )
-        upu_n_m1_t_3 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
-            R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
-            R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
-            R_zz*upu_base_frame_zz)
-        )
-        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
-        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
-        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_q_3*upu_root_1
-        # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
-        upu_qd_1_2 = (
-        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
-            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
-            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -5018,12 +4432,11 @@ def _run_joint_rates(m, X, V):
         )
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8)
         )
         # (upu-qd_1) rate of joint 1
-        out_qd[_qd_upu[0][leg]] = upu_qd_1_2
+        out_qd[_qd_upu[0][leg]] = upu_qd_1
         # (upu-qd_2) rate of joint 2
         out_qd[_qd_upu[1][leg]] = upu_qd_2
         # (upu-qd_3) rate of joint 3
@@ -5031,7 +4444,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 555 mul, 375 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 303 mul, 204 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -5120,9 +4533,7 @@ def _run_joint_accelerations(m, X, V, A):
         upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
             upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
             upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
-            upu_branch_2, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+            upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
         upu_q_x = (
@@ -5199,54 +4610,10 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_t = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
-            R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
-            R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
-            R_zz*upu_base_frame_zx)
-        )
-        upu_n_m1_t_2 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
-            R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
-            R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
-            R_zz*upu_base_frame_zy)
-        )
-        upu_n_m1_t_3 = (
-        upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
-            R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
-            R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
-            R_zz*upu_base_frame_zz)
-        )
-        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
-        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
-        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_q_3*upu_root_1
-        # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
-        upu_qd_1_2 = (
-        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
-            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
-            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -5254,15 +4621,14 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
-        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_qd_2*upu_qd_2
-        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
-        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
-        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_t = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_W_2_t_2 = upu_qd_2*upu_qd_2
         upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
-        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-S_ddot) acceleration of the connection point
         upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
         upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
@@ -5273,48 +4639,16 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
-        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_x = upu_S_ddot_in_axes2_x + upu_W_2_t_3*upu_q_3
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
-        # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_z = (
-        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
-        )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
-        )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
-        )
-        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
-        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
-        # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_4 = (
-        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
-        )
-        upu_nu_1_t_5 = (
-        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
-            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
-        )
-        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
-        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
-        upu_etad_1_t = (
-        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
-            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
-        )
-        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
+        upu_qdd_1 = inv_upu_root_1*upu_rel_in_axes2_z
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2_t = upu_bias_t*upu_qd_2
         upu_qdd_2_t_2 = (
@@ -5322,15 +4656,14 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
         )
         upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
-        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8)
         )
         # (upu-qdd_1) acceleration of joint 1
-        out_qdd[_qdd_upu[0][leg]] = -upu_qdd_1_t
+        out_qdd[_qdd_upu[0][leg]] = upu_qdd_1
         # (upu-qdd_2) acceleration of joint 2
         out_qdd[_qdd_upu[1][leg]] = upu_qdd_2
         # (upu-qdd_3) acceleration of joint 3
@@ -5437,7 +4770,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 804 mul, 573 add, 12 div, 6 sqrt, 0 trig
+# legs: 663 mul, 477 add, 9 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -5611,10 +4944,6 @@ def _run_legs(m, X, V, A):
         axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
             axis_x_upu_axes2_z*upu_S_dot_z
         )
-        upu_S_dot_in_axes2_z = (
-        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z
-        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -5640,7 +4969,6 @@ def _run_legs(m, X, V, A):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -5653,24 +4981,17 @@ def _run_legs(m, X, V, A):
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
+        )
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
-        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
-        upu_omega_in_axes2_x = (
-        axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
-        )
-        upu_omega_in_axes2_y = (
-        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
-        )
-        upu_qd_1_2 = (
-        upu_w_1_in_axes2_z*(upu_S_dot_in_axes2_z +
-            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
-            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+        upu_qd_1 = (
+        inv_upu_root_1*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
@@ -5678,15 +4999,15 @@ def _run_legs(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x_2 = upu_e_1_in_axes2_x*upu_qd_1_2
-        upu_omega_1_in_axes2_y_2 = -upu_c_2*upu_qd_1_2
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_qd_2*upu_qd_2
-        upu_W_2_in_axes2_yz_2 = upu_omega_1_in_axes2_y_2*upu_qd_2
-        upu_W_2_in_axes2_xz_2 = upu_omega_1_in_axes2_x_2*upu_qd_2
-        upu_W_2_t_2 = upu_omega_1_in_axes2_y_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_t = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_W_2_t_2 = upu_qd_2*upu_qd_2
         upu_W_2_t_3 = upu_W_2_t + upu_W_2_t_2
-        upu_W_2_in_axes2_xy_2 = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_y_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         # (upu-S_ddot) acceleration of the connection point
         upu_S_ddot_x = t_ddot_x + B_p_xy*upu_q_y + B_p_xz*upu_q_z - W_p_t_4*upu_q_x
         upu_S_ddot_y = t_ddot_y + B_p_yx*upu_q_x + B_p_yz*upu_q_z - W_p_t_5*upu_q_y
@@ -5697,47 +5018,15 @@ def _run_legs(m, X, V, A):
         )
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_in_axes2_y_2
-        upu_bias_in_axes2_z_2 = 2.0*upu_W_2_in_axes2_xz_2*upu_q_3 - upu_bias_t_3
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
-            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z_2
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
-        # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
-        upu_omega_in_axes2_z = (
-        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
-        )
-        upu_nd_m1_t = (
-        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z
-        )
-        upu_nd_m1_t_2 = (
-        upu_n_m1_in_axes2_y*upu_omega_in_axes2_z - upu_end_p1_in_axes2_z*upu_omega_in_axes2_x
-        )
-        upu_nd_m1_in_axes2_x_2 = -upu_nd_m1_t_2 - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x_2
-        upu_nd_m1_in_axes2_y_2 = upu_nd_m1_t - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y_2
-        # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t_2 = upu_omega_in_axes2_z - upu_qd_2
-        upu_nu_1_t_4 = (
-        -upu_W_2_in_axes2_xz_2*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz_2*upu_end_p1_in_axes2_y
-        )
-        upu_nu_1_t_5 = (
-        upu_nd_m1_in_axes2_y_2*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y_2) -
-            upu_nd_m1_in_axes2_x_2*(upu_omega_1_in_axes2_x_2 - upu_omega_in_axes2_x) -
-            upu_nu_1_t_2*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y_2 -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x_2)
-        )
-        upu_nu_1_2 = upu_nu_1_t_5 - upu_nu_1_t_4
-        # (upu-etad_1) acceleration with which the joints turn along moment direction 1
-        upu_etad_1_t = (
-        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
-            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
-        )
-        upu_etad_1 = upu_nu_1_2 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
+        upu_qdd_1 = inv_upu_root_1*upu_rel_in_axes2_z
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2_t = upu_bias_t*upu_qd_2
         upu_qdd_2_t_2 = (
@@ -5745,17 +5034,17 @@ def _run_legs(m, X, V, A):
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_qdd_2_t
         )
         upu_qdd_2_t_3 = inv_upu_q_3*upu_qdd_2_t_2
-        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy_2
+        upu_qdd_2 = upu_qdd_2_t_3 - upu_W_2_in_axes2_xy
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
-        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
+        upu_alpha_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qdd_1
+        upu_alpha_1_in_axes2_y = -upu_c_2*upu_qdd_1
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz_2 - upu_alpha_1_t
-        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz_2
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy_2 - upu_qdd_2
-        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz_2 - upu_alpha_2_in_axes2_y
-        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz_2 + upu_alpha_2_in_axes2_x
+        upu_B_2_in_axes2_xy = upu_W_2_in_axes2_xy - upu_qdd_2
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
         upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
         upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
@@ -5763,57 +5052,60 @@ def _run_legs(m, X, V, A):
         upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_in_axes2_x = upu_S_ddot_in_axes2_x - upu_g_in_axes2_x
         upu_acc_3_in_axes2_y = upu_qdd_2_t + upu_qdd_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_3 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_t = upu_omega_1_in_axes2_x_2*upu_omega_1_in_axes2_x_2
+        upu_f_3_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_2 = upu_W_2_t_3*upu_h_3_in_spec2_x
+        upu_f_3_t_3 = upu_h_3_in_spec2_z*(upu_W_2_t_2 + upu_f_3_t)
+        upu_f_3_t_4 = upu_h_3_in_spec2_y*(upu_W_2_t + upu_f_3_t)
         upu_f_3_in_axes2_x = (
         upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
-            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_W_2_t_3*upu_h_3_in_spec2_x
+            upu_f_3_t_2 - upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z
         )
         upu_f_3_in_axes2_y = (
-        upu_acc_3_in_axes2_y*upu_link3_mass + upu_alpha_1_t*upu_h_3_in_spec2_y +
-            upu_h_3_in_spec2_x*upu_qdd_2_t_3 + upu_h_3_in_spec2_z*(upu_W_2_t + upu_f_3_t)
+        upu_f_3_t_3 + upu_acc_3_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_x*upu_qdd_2_t_3 -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
         )
         upu_f_3_in_axes2_z = (
-        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
-            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_W_2_t_2 + upu_f_3_t)
+        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass - upu_f_3_t_4
+            - upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_t = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
-        upu_mu_2_t_2 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
-        upu_mu_2_t_3 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
+        upu_mu_2_t = upu_J_group_2_in_axes2_yz*(upu_W_2_t - upu_W_2_t_2)
+        upu_mu_2_t_2 = upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_W_2_t_2)
+        upu_mu_2_t_3 = upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t)
+        upu_mu_2_t_4 = upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z
+        upu_mu_2_t_5 = upu_g_in_axes2_x*upu_h_2_in_spec2_y - upu_g_in_axes2_z*upu_h_2_in_spec2_x
+        upu_mu_2_t_6 = upu_g_in_axes2_x*upu_h_2_in_spec2_z + upu_g_in_axes2_y*upu_h_2_in_spec2_x
         upu_mu_2_in_axes2_x = (
-        upu_mu_2_t + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 -
-            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy - upu_J_group_2_in_axes2_yz*(upu_W_2_t -
-            upu_W_2_t_2) - upu_Sigma_2_in_axes2_zz*upu_alpha_1_t -
+        upu_mu_2_t + upu_mu_2_t_4 + upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_xz*upu_qdd_2_t_3 +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x -
+            upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
-        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_W_2_t -
-            upu_f_3_t) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
-            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 -
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y - upu_mu_2_t_2 - upu_mu_2_t_5 -
             upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
             upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
         )
         upu_mu_2_in_axes2_z = (
-        upu_J_group_2_in_axes2_xy*(upu_f_3_t - upu_W_2_t_2) +
+        upu_mu_2_t_3 + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
             upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
             upu_Sigma_2_in_axes2_xx*upu_qdd_2_t_3 + upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z +
-            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_3 -
-            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x - upu_mu_2_t_6 -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
-        upu_N_2_t = upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_q_3*upu_mu_2_in_axes2_z
-        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1 = upu_N_2_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
-        # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
-        upu_c_in_axes2_z = upu_N_2_t*upu_w_1_in_axes2_z
+        upu_c_in_axes2_z = (
+        inv_upu_root_1*(upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x)
+        )
         upu_c_x = (
         axis_z_upu_axes2_x*upu_c_in_axes2_z - axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
             axis_y_upu_axes2_x*upu_G_in_axes2_y
@@ -5826,25 +5118,16 @@ def _run_legs(m, X, V, A):
         axis_z_upu_axes2_z*upu_c_in_axes2_z - axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
             axis_y_upu_axes2_z*upu_G_in_axes2_y
         )
-        # (upu-c_m) moment of the leg on the platform without actuation
-        upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
-        upu_c_m_x = axis_x_upu_axes2_x*upu_c_m_in_axes2_x - axis_y_upu_axes2_x*upu_G_m_in_axes2_y
-        upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
-        upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         ok = (
         ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
-            * 0.8)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001)
         )
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_upu[0][leg]] = upu_c_x
         out_leg_force[_leg_force_upu[1][leg]] = upu_c_y
         out_leg_force[_leg_force_upu[2][leg]] = upu_c_z
-        # (upu-c_m) moment of the leg on the platform without actuation
-        out_leg_force[_leg_force_upu[3][leg]] = upu_c_m_x
-        out_leg_force[_leg_force_upu[4][leg]] = upu_c_m_y
-        out_leg_force[_leg_force_upu[5][leg]] = upu_c_m_z
         # (upu-w_3) force part of reciprocal wrench 3
         out_actuator[_actuator_upu[0][leg]] = axis_x_upu_axes2_x
         out_actuator[_actuator_upu[1][leg]] = axis_x_upu_axes2_y
@@ -5995,7 +5278,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 379 mul, 249 add, 9 div, 13 sqrt, 0 trig
+# condition: 376 mul, 246 add, 9 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -6146,7 +5429,6 @@ def _run_condition(m, X):
         upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
         upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
-        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -6159,21 +5441,22 @@ def _run_condition(m, X):
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
+        )
         upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
         upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
         upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_pivot_size = abs(upu_root_1_t)
         upu_pivot_size_2 = abs(upu_q_3_t)
-        upu_pivot_size_3 = abs(upu_volume_c_t)
-        upu_pivot_size_4 = abs(upu_q_3)
-        upu_pivot_size_5 = abs(upu_w_1_t)
+        upu_pivot_size_3 = abs(upu_q_3)
+        upu_pivot_size_4 = abs(upu_root_1)
+        upu_pivot_size_5 = abs(upu_volume_c_t)
         upu_least_pivots = (
         least(least(least(least(1.25*sqrt(upu_pivot_size), 1.25*sqrt(upu_pivot_size_2)),
-            1.5624999999999998*upu_pivot_size_3), 1.25*upu_pivot_size_4), 1.25*upu_pivot_size_5)
+            1.25*upu_pivot_size_3), 1.25*upu_pivot_size_4), 1.5624999999999998*upu_pivot_size_5)
         )
         # (upu-H_a_3) moment of the column's unit force about the platform origin
         upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
@@ -6192,9 +5475,9 @@ def _run_condition(m, X):
         )
         clear = (
         clear & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t)
-            > _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
-            (abs(upu_w_1_t) > _TOLERANCE * 0.8)
+            (abs(upu_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) >
+            _TOLERANCE * 0.8) & (abs(upu_root_1) > _TOLERANCE * 0.8) & (abs(upu_volume_c_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_upu += upu_spread_t_4
