@@ -82,7 +82,7 @@ class _Closed:
         self.data: Any = mujoco.MjData(self.model)
         self.spatial = case.manipulator.space is Space.SPATIAL
         task = 6 if self.spatial else 3
-        self.driven = task + np.array(m.ACTUATED)
+        self.actuated = task + np.array(m.ACTUATED)
         pose, V, A = (np.array(a) for a in (s.X, s.V, s.A))
         self.turn = m.rotation(s.X) if self.spatial else None
         if self.spatial:  # angular velocities of a floating body are in its axes
@@ -95,7 +95,7 @@ class _Closed:
         self.qacc = np.hstack([A, m.joint_accelerations(s.X, s.V, s.A)])
         rows = np.arange(3 * len(case.manipulator.legs))
         self.rows = rows if self.spatial else rows[rows % 3 < 2]
-        self.selection = np.eye(self.model.nv)[:, self.driven]
+        self.selection = np.eye(self.model.nv)[:, self.actuated]
 
     def _set(self, k: int) -> None:
         self.data.qpos[:], self.data.qvel[:] = self.qpos[k], self.qvel[k]
@@ -107,12 +107,12 @@ class _Closed:
         mujoco.mj_inverse(self.model, self.data)
         closures = self.data.efc_J.reshape(-1, self.model.nv)[self.rows]
         both = np.hstack([self.selection, closures.T])
-        return (np.linalg.solve(both, self.data.qfrc_inverse)[: len(self.driven)],)
+        return (np.linalg.solve(both, self.data.qfrc_inverse)[: len(self.actuated)],)
 
     def forward_dynamics(self, k: int) -> tuple[Array]:
         """MuJoCo's own acceleration, with constraints that give."""
         self._set(k)
-        self.data.qfrc_applied[self.driven] = self.s.tau[k]
+        self.data.qfrc_applied[self.actuated] = self.s.tau[k]
         mujoco.mj_forward(self.model, self.data)
         A = self.data.qacc[: self.s.A.shape[1]].copy()
         if self.turn is not None:

@@ -88,7 +88,7 @@ class Tree:
         return parent
 
     @property
-    def driven(self) -> Array:
+    def actuated(self) -> Array:
         """Places of the actuated joints in the tree's velocity."""
         return self.task + np.array(self.case.module().ACTUATED)
 
@@ -111,7 +111,7 @@ class Tree:
             parts.append([first, len(leg.joints), 3 if self.spatial else 2])
             parts += [[end], leg.platform_joint.offset, [self.platform], leg.platform_point]
             first += len(leg.joints)
-        parts += [[len(self.driven)], self.driven, [len(s.X)]]
+        parts += [[len(self.actuated)], self.actuated, [len(s.X)]]
         rows = np.hstack([self.configurations(s), s.V, s.A])
         return np.concatenate([np.ravel(np.asarray(p, dtype=float)) for p in (*parts, rows)])
 
@@ -191,7 +191,7 @@ def constraint_dynamics(case: Case, s: States) -> Callable[[int], tuple[Array]]:
     to_base, bias = np.tile(np.eye(tree.task), (len(q), 1, 1)), np.zeros((len(q), tree.task))
     v, tau = np.zeros((2, len(q), model.nv))
     v[:, : tree.task], v[:, tree.task :] = s.V, case.module().joint_rates(s.X, s.V)
-    tau[:, tree.driven] = s.tau
+    tau[:, tree.actuated] = s.tau
     if tree.spatial:  # the tree's velocity of the platform is in its own axes
         to_base[:, :3, :3] = to_base[:, 3:, 3:] = case.module().rotation(s.X)
         v[:, :6] = np.einsum("nji,nj->ni", to_base, s.V)

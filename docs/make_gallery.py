@@ -146,11 +146,11 @@ def _legs(manipulator: Manipulator) -> str:
     """Such as 6 UPS, actuated joints underlined."""
     parts = []
     for leg_type in leg_types(manipulator):
-        text, driven = "", False
+        text, actuated = "", False
         for letter in leg_type.architecture:
             if letter != "_":
-                text += f"<ins>{letter}</ins>" if driven else letter
-            driven = letter == "_"
+                text += f"<ins>{letter}</ins>" if actuated else letter
+            actuated = letter == "_"
         parts.append(f"{leg_type.count} {text}")
     return ", ".join(parts)
 

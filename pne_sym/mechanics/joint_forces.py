@@ -21,6 +21,7 @@ from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.live import value_at
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.effects import Friction
+from pne_sym.model.leg_types import a_leg
 from pne_sym.model.manipulator import Joint
 from pne_sym.vector import Dot, Vector, ZeroVector
 
@@ -143,7 +144,7 @@ def write_joint_forces(
     joints, end = g.leg_type.model.joints, g.leg_type.model.platform_joint.friction
     if not (end or any(j.friction or j.spring or j.actuator for j in joints)):
         return JointForces(motion.qd, motion.qdd)
-    title = f"Forces in the joints of a {g.leg_type.architecture} leg"
+    title = f"Forces in the joints of {a_leg(g.leg_type.architecture)}"
     book.chapter(
         f"{g.leg_type.name}-J", title, _text(joints, end, coupled=coupled), g.leg_type.name
     )

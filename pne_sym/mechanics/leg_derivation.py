@@ -26,6 +26,7 @@ from pne_sym.mechanics.scales import home_lengths, with_size
 from pne_sym.mechanics.structure import LegType
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
+from pne_sym.model.leg_types import a_leg
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Vector, vector_sum
 
@@ -75,7 +76,7 @@ def derive_leg(
 ) -> Leg:
     """The chapters of a leg type."""
     prefix, title = leg_type.name, leg_type.architecture
-    book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
+    book.chapter(f"{prefix}-G", f"Geometry and inertia of {a_leg(title)}", "", prefix)
     g = build_geometry(book, leg_type, space.planar)
     g = with_size(book, g, home_lengths(manipulator, leg_type))
     bodies = introduce_bodies(book, g, space.planar)
@@ -86,7 +87,7 @@ def derive_leg(
     completion = completion_of(manipulator, g, planar=space.planar)
     pure = force_vanishes(manipulator, g)
     g = replace(g, composite=composite, completion=completion, pure_moment=pure)
-    book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
+    book.chapter(f"{prefix}-K", f"Inverse kinematics of {a_leg(title)}", _INVERSE, prefix)
     inverse = _inverse_kinematics(book, manipulator, space, platform, g)
     _tell_rotations(book, g, inverse)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))

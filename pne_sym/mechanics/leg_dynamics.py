@@ -25,6 +25,7 @@ from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
 from pne_sym.mechanics.links import LinkBody
 from pne_sym.mechanics.terms import glossary
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
@@ -134,7 +135,7 @@ class DynamicsWriter:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
         of = self.g.leg_type
         self.book.chapter(
-            f"{of.name}-N", f"Newton-Euler of a {of.architecture} leg", self._text(), of.name
+            f"{of.name}-N", f"Newton-Euler of {a_leg(of.architecture)}", self._text(), of.name
         )
         found = self.links.forces()
         gamma = BalanceWriter(self.links, found, self.forces).write()

@@ -20,6 +20,7 @@ from pne_sym.mechanics.moving_base import carried_leg
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.terms import glossary
 from pne_sym.model.kinematics import TaskSpace
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import Cross, Skew, Vector, VectorSymbol, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
@@ -95,7 +96,7 @@ def write_motion(
     rates, of = RateWriter(book, g, platform, space, inverse).write(), g.leg_type
     text = _TEXT + (_REMAINDERS if g.composite else _COLLECTED)
     also = _other_accelerations(rates.chain.extras, moments=bool(g.pairs and space.rotates))
-    title = f"Accelerations of a {of.architecture} leg"
+    title = f"Accelerations of {a_leg(of.architecture)}"
     book.chapter(f"{of.name}-A", title, text + also + _TENSOR, of.name)
     joints = write_joint_accelerations(book, platform, rates, rotates=space.rotates)
     base, origin = GroupMotion(ZeroVector, ZeroVector, (ZeroTensor, ZeroTensor)), ZeroVector

@@ -16,6 +16,7 @@ from pne_sym.mechanics.leg_screws import LegScrews, ScrewWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import (
     Compose,
     Cross,
@@ -95,7 +96,7 @@ class RateWriter:
     def write(self) -> LegRates:
         """The chapter: connection point, velocity and reciprocal vectors, rates of the joints."""
         g, p, chain, of = self.g, self.p, self.chain, self.g.leg_type
-        self.book.chapter(f"{of.name}-V", f"Rates of a {of.architecture} leg", _TEXT, of.name)
+        self.book.chapter(f"{of.name}-V", f"Rates of {a_leg(of.architecture)}", _TEXT, of.name)
         S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
         rods: dict[int, Vector] = {}
         following: Vector = ZeroVector

@@ -15,6 +15,7 @@ from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_accelerations import JointAccelerations
 from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import (
     Compose,
     Cross,
@@ -145,7 +146,7 @@ def carried_leg(
     """
     g, w = motion.chain.g, base.omega
     eq, of = Writer(book, g, _TERMS), g.leg_type
-    title = f"Motion of a {of.architecture} leg with its base"
+    title = f"Motion of {a_leg(of.architecture)} with its base"
     book.chapter(f"{of.name}-B", title, _OF_LEG, of.name)
     r, coriolis = p.t + g.platform_point, Cross(w, motion.S_dot) * 2
     total = motion.S_ddot + Cross(base.alpha, r) + Cross(w, Cross(w, r)) + coriolis

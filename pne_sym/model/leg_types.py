@@ -35,6 +35,15 @@ class Structure:
     indices: tuple[int, ...]
 
 
+def a_leg(architecture: str) -> str:
+    """A leg by its architecture, whose letters are spelled.
+
+    >>> a_leg("UPS"), a_leg("RRR"), a_leg("SPS")
+    ('a UPS leg', 'an RRR leg', 'an SPS leg')
+    """
+    return f"a{'n' * (architecture[:1] in 'FHLMNRSX')} {architecture} leg"
+
+
 def named_structures(
     legs: Sequence[Leg], written: Mapping[str, Key | None] | None = None
 ) -> tuple[Structure, ...]:

@@ -15,6 +15,7 @@ from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.joints import read_joint
 from pne_sym.model.kinematics import Pose, chain_pose
+from pne_sym.model.leg_types import a_leg
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import (
     IDENTITY3,
@@ -101,7 +102,7 @@ def choose_shape(group: LegGroup, space: Space, *, side: float, straight: bool =
         raise SpecError(
             SOURCE,
             "",
-            f"the degrees of freedom of a {group.plain} leg are dependent however its axes "
+            f"the degrees of freedom of {a_leg(group.plain)} are dependent however its axes "
             "are laid",
             "a chain without superfluous joints, or the surplus marked extra by *",
         )
@@ -198,7 +199,7 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
             raise SpecError(
                 SOURCE,
                 "",
-                f"{count - sum(marked)} degrees of freedom of a {group.plain} leg that are not "
+                f"{count - sum(marked)} degrees of freedom of {a_leg(group.plain)} that are not "
                 "marked extra",
                 f"at most {conditions}: {surplus} marked by *, or none to have them chosen",
             )

@@ -72,7 +72,7 @@ def caller(bundle: Bundle, api: CFunction) -> str:
     "which", sampled(["tripod_3rps", "fivebar_redundant", "point_4rrr_redundant"], 2)
 )
 def test_sanitized(which: str, tmp_path: Path) -> None:
-    """Constrained, redundantly driven; iterated with extra coordinates and redundant."""
+    """Constrained, redundantly actuated; iterated with extra coordinates and redundant."""
     manipulator = (models.catalogue if which in manipulators.names() else models.drawn)(which)
     bundle = models.bundle(manipulator)
     table = c_functions(bundle)

@@ -319,7 +319,7 @@ def test_one_more_leg_is_a_small_change() -> None:
 
 
 def test_an_actuated_joint_is_a_small_change() -> None:
-    """Which joint is driven moves what names the leg, and the columns of H."""
+    """Which joint is actuated moves what names the leg, and the columns of H."""
     manipulator = models.catalogue("planar_3rpr")
     legs = tuple(
         dataclasses.replace(

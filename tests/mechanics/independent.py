@@ -241,7 +241,7 @@ class Facts:
         return float(self.result.joint_forces[j - 1] - self.v(j) @ self.tip_force)
 
     def combined(self, *, moment: bool = False, reduced: bool) -> Any:
-        """Sum over the freedoms of the reciprocal wrench times the distal forces."""
+        """Sum over the degrees of freedom of the reciprocal wrench times the distal forces."""
         vectors = self.o if moment else self.w
         forces = self.gamma if reduced else (lambda j: float(self.result.joint_forces[j - 1]))
         return np.sum([vectors(j) * forces(j) for j in self.free], axis=0)

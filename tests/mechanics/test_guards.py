@@ -18,8 +18,8 @@ COMPLETED = (
     "two joints, revolute at the platform",
     "one helix, revolute at the platform",
 )
-"""Legs whose freedoms are completed to a basis, as the Tricept's central one: the sizes of wrenches
-are divided by."""
+"""Legs whose degrees of freedom are completed to a basis, as the Tricept's central one: the sizes
+of wrenches are divided by."""
 
 
 def _divisors(function: Function) -> Iterator[tuple[str, Any]]:

@@ -18,7 +18,7 @@ from tests.oracle.coordinates import joint_slices, twist_basis
 from tests.oracle.mechanisms import mechanism
 from tests.whole.rewriting import Rewriting, drawn_shifts
 
-# freedoms, actuators, constraints, extra coordinates, passive ones, cases of section 3
+# degrees of freedom, actuators, constraints, extra coordinates, passive ones, cases of section 3
 KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
     "stewart": (6, 6, 0, 0, 0, ("3.1",)),
     "stewart_sps": (12, 6, 0, 6, 6, ("3.6",)),
@@ -92,8 +92,8 @@ def test_freedoms_by_the_oracle(name: str) -> None:
         row[:, basis.shape[1] :][:, where] = found.joints
         rows.append(row)
     values = np.linalg.svd(np.vstack(rows), compute_uv=False)
-    freedoms = basis.shape[1] + q.size - int(np.sum(values > 1e-6 * values[0]))
-    assert mobility(manipulator).dofs == freedoms
+    dofs = basis.shape[1] + q.size - int(np.sum(values > 1e-6 * values[0]))
+    assert mobility(manipulator).dofs == dofs
 
 
 @pytest.mark.parametrize("name", ["tricept", "tripod_3upu", "stewart", "planar_mixed", "delta"])
@@ -144,7 +144,7 @@ def test_one_line_for_people() -> None:
 
 
 def test_passive_freedoms_do_not_hide_redundancy() -> None:
-    """Four driven legs for three freedoms of the platform, each with a passive roller."""
+    """Four actuated legs for three degrees of freedom of the platform, each with a roller."""
     rollers = mechanism("planar", ["Rz Px* Rz+ | R"] * 4, np.random.default_rng(1))
     found = mobility(rollers)
     assert (found.dofs, found.actuators, found.passive) == (7, 4, 4)
@@ -152,7 +152,7 @@ def test_passive_freedoms_do_not_hide_redundancy() -> None:
 
 
 def one_guide() -> Manipulator:
-    """A driven slide that carries a platform without turning: two constraints."""
+    """A actuated slide that carries a platform without turning: two constraints."""
     return mechanism("translational", ["Px* | S"], np.random.default_rng(0))
 
 

@@ -36,7 +36,7 @@ def spec(**fields: Any) -> Any:
 
 
 def compound(joint: dict[str, Any], **fields: Any) -> list[Joint]:
-    """The freedoms of a joint before the lift's own."""
+    """The degrees of freedom of a joint before the lift's own."""
     found = spatial()
     found["legs"][0]["joints"].insert(0, {**joint, **fields})
     count = 2
@@ -71,14 +71,14 @@ def test_what_is_left_out_is_absent() -> None:
 
 
 def test_of_several_freedoms() -> None:
-    """One table is meant for each freedom, motors for the driven ones; a list tells them apart."""
+    """One table is for each degree of freedom, motors for actuated ones; a list is exact."""
     both = compound(UNIVERSAL, friction={"viscous": 2.0})
     assert [joint.friction for joint in both] == [Friction(2.0), Friction(2.0)]
     one = compound(UNIVERSAL, friction=[False, {"viscous": 2.0}])
     assert [joint.friction for joint in one] == [None, Friction(2.0)]
     motor = {"rotor_inertia": 1e-3, "gear_ratio": 9.0}
-    driven = compound(UNIVERSAL, actuated=[False, True], actuator=motor)
-    assert [joint.actuator for joint in driven] == [None, Actuator(1e-3, 9.0)]
+    actuated = compound(UNIVERSAL, actuated=[False, True], actuator=motor)
+    assert [joint.actuator for joint in actuated] == [None, Actuator(1e-3, 9.0)]
     pushed = compound(UNIVERSAL, actuated=[False, True], limits={"rate": 2.0, "effort": 9.0})
     assert [joint.limits for joint in pushed] == [Limits(rate=2.0), Limits(rate=2.0, effort=9.0)]
     pushed = compound(UNIVERSAL, actuated=[False, True], limits={"effort": 9.0})

@@ -114,7 +114,7 @@ def leg_closure(manipulator: Manipulator, leg: Leg, X: Array, q: Array) -> LegCl
 def close_legs(manipulator: Manipulator, X: Array, q: Array) -> Array:
     """Displacements (nj,) that close every leg at pose X, by Newton's method from q.
 
-    The displacements of extra joints are taken from X.  A leg with fewer freedoms than
+    The displacements of extra joints are taken from X.  A leg with fewer degrees of freedom than
     the space comes out with its nearest closure when X is not admissible.
     """
     result = np.array(q, dtype=float)
@@ -163,7 +163,7 @@ def follow(
 def assemble(manipulator: Manipulator, X: Array, q: Array) -> tuple[Array, Array]:
     """The nearest pose and displacements that close every loop (least change of both).
 
-    Unlike `close_legs` this moves the platform too, as platforms with fewer freedoms than
+    Unlike `close_legs` this moves the platform too, as platforms with fewer degrees of freedom than
     their space need.
     """
     X, q = np.array(X, dtype=float), np.array(q, dtype=float)

@@ -55,7 +55,7 @@ def pose_size(space: Space) -> int:
 
 
 def task_size(space: Space) -> int:
-    """Number of the platform's freedoms in V, extra coordinates not counted."""
+    """Number of the platform's degrees of freedom in V, extra coordinates not counted."""
     return len(_TWIST_COMPONENTS[space])
 
 
@@ -83,7 +83,7 @@ def actuated_indices(manipulator: Manipulator) -> list[int]:
 
 
 def passive_extra_rows(manipulator: Manipulator) -> list[int]:
-    """Entries of V that belong to extra coordinates whose joints are not driven."""
+    """Entries of V that belong to extra coordinates whose joints are not actuated."""
     joints = [joint for leg in manipulator.legs for joint in leg.joints if joint.extra]
     first = task_size(manipulator.space)
     return [first + row for row, joint in enumerate(joints) if not joint.actuated]

@@ -70,10 +70,10 @@ def rotor_matrix(manipulator: Manipulator) -> Array:
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     if manipulator.coupling is None:
         return np.diag(rotors(joints))
-    driven = [k for k, joint in enumerate(joints) if joint.actuated]
-    turns = np.zeros((len(driven), len(joints)))
-    turns[:, driven] = manipulator.coupling
-    return np.asarray(turns.T @ np.diag(rotors(joints[k] for k in driven)) @ turns)
+    actuated = [k for k, joint in enumerate(joints) if joint.actuated]
+    turns = np.zeros((len(actuated), len(joints)))
+    turns[:, actuated] = manipulator.coupling
+    return np.asarray(turns.T @ np.diag(rotors(joints[k] for k in actuated)) @ turns)
 
 
 def margins(joints: Iterable[Joint], q: Array) -> Array:

@@ -2,7 +2,7 @@
 
 A leg is written as its joints from the base, a bar, and its platform joint:
 "Rz0 Ry Px* | S".  A joint is its kind (R, P, H), its axis (x, y, z: a coordinate direction
-of the preceding link's frame; t: tilted), then any of 0 (the link has no mass), * (driven),
+of the preceding link's frame; t: tilted), then any of 0 (the link has no mass), * (actuated),
 + (extra coordinate).  A platform joint is S, R, U or rigid.
 """
 

@@ -264,7 +264,7 @@ class PinocchioModel:
         return given, [index for index in range(self.model.nv) if index not in given]
 
     def _elimination(self, closures: _Closures, X: Array) -> Array:
-        """(tree nv, nv): v = G V, least squares where legs leave freedoms out."""
+        """(tree nv, nv): v = G V, least squares where legs leave degrees of freedom out."""
         given, free = self._given_and_free()
         G = np.zeros((self.model.nv, len(given)))
         G[: self.task, : self.task] = self._platform_map(X)

@@ -47,7 +47,7 @@ from tests.oracle.jets import Array, cross_matrix, taylor
 
 @dataclass(frozen=True)
 class LegResult:
-    """One leg: m joints, nc closure conditions, k of them left out by its freedoms.
+    """One leg: m joints, nc closure conditions, k of them left out by its degrees of freedom.
 
     Attributes:
         motion: of its m links, at the given A.
@@ -87,7 +87,7 @@ class Result:
         qd: (nj,) joint rates.
         qdd: (nj,) joint accelerations at A.
         tau: (nu,) driving forces for A and the wrench; least norm where not unique.  Rows
-            of extra coordinates that are not driven hold in least squares only.
+            of extra coordinates that are not actuated hold in least squares only.
         lam: (nc,) multipliers that go with tau.
         tau_residual: (nv,) what tau and lam leave of M A + Z - W; zero for a consistent A.
         load: (nv,) the wrench as a generalised force.
@@ -194,7 +194,7 @@ def project(
         The matrices and all derived quantities.
 
     Raises:
-        OracleError: a leg is singular or has freedoms that X and V do not determine.
+        OracleError: a leg is singular or has degrees of freedom that X and V do not determine.
     """
     X, q, V = (np.asarray(array, dtype=float) for array in (X, q, V))
     A = np.zeros_like(V) if A is None else np.asarray(A, dtype=float)
@@ -294,18 +294,18 @@ def accelerated(manipulator: Manipulator, result: Result, tau: Array) -> Array:
 def _leg_kinematics(
     manipulator: Manipulator, number: int, X: Array, q: Array, pure: int | None
 ) -> _LegKinematics:
-    """Rates of a leg's joints by V, and what its freedoms leave to the platform."""
+    """Rates of a leg's joints by V, and what its degrees of freedom leave to the platform."""
     leg = manipulator.legs[number]
     closure = leg_closure(manipulator, leg, X, q)
     free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
     left, values, _ = np.linalg.svd(closure.joints[:, free])
     if len(free) > left.shape[0] or values.min() <= RANK_TOLERANCE * values.max():
-        raise OracleError(f"leg {number} is singular or has undetermined freedoms")
+        raise OracleError(f"leg {number} is singular or has undetermined degrees of freedom")
     rates = _extra_selection(manipulator, number)
     task, total = task_size(manipulator.space), rates.shape[1]
     demand = closure.platform @ twist_basis(manipulator.space) @ np.eye(task, total)
     demand += closure.joints @ rates
-    # Motions that complete the freedoms tell what part of one that is not admissible is theirs.
+    # What completes the degrees of freedom tells which part of any motion is theirs.
     null_space = left[:, len(free) :]
     motions = completing(manipulator.space, null_space, pure)
     split = np.linalg.inv(np.hstack([closure.joints[:, free], motions]))[: len(free)]
@@ -328,7 +328,7 @@ def _leg_kinematics(
 
 
 def completing(space: Space, null_space: Array, pure: int | None) -> Array:
-    """(nc, k) motions that complete a leg's freedoms, by the wrenches that these leave out.
+    """(nc, k) motions that complete a leg's degrees of freedom, by its constraint wrenches.
 
     Lambda is the component of the leg's force along the unit force of such a wrench, or of its
     moment where that is all there is: the motions are along these forces and about these moments.

@@ -49,7 +49,7 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
         "spatial",
         ["Rz Px* Ry*+ | S", "Rz Px* | S", "Rz Ry* Px* | S"],
     ),
-    "constrained, more actuators than freedoms": (
+    "constrained, more actuators than degrees of freedom": (
         "spatial",
         ["Rz* Px* | S", "Rz Px* | S", "Rz* Px* | S"],
     ),
@@ -72,7 +72,7 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
     "spherical, constrained": ("spherical", ["Rz* Ry | S", "Rz Ry Px* | S", "Rz Ry* Px | S"]),
     "planar, rigid at the platform": ("planar", ["Rz* Px Rz | rigid", "Rz Px* | R", "Rz* Rz | S"]),
     "planar, constrained": ("planar", ["Rz* Px | rigid", "Rz Px* | R", "Rz Rz | R"]),
-    "planar, driven extra": ("planar", ["Rz* Rz+* Px | R", "Rz Px* | R", "Rz* Rz | R"]),
+    "planar, actuated extra": ("planar", ["Rz* Rz+* Px | R", "Rz Px* | R", "Rz* Rz | R"]),
     "passive extra coordinate held by a surplus actuator": (
         "spatial",
         ["Rz* Ry* Ry* Ry+ | S", "Rz* Ry* Ry | S", "Rz* Ry* Ry | S"],
@@ -83,7 +83,7 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
     ),
     "planar, passive extra": ("planar", ["Rz* Rz+ Px | R", "Rz Px* | R", "Rz* Rz | R"]),
     "point": ("point", ["Rz* Px | R", "Rz Pt* | R", "Rz* Rz | S"]),
-    "point, driven extra": ("point", ["Rz* Px*+ Rz | R", "Rz Pt* | R"]),
+    "point, actuated extra": ("point", ["Rz* Px*+ Rz | R", "Rz Pt* | R"]),
 }
 
 

@@ -44,7 +44,7 @@ class Figures(NamedTuple):
         U: of the legs' U.
         backwards, forwards: of the legs' U with E4 alone, where k.W < 0 and elsewhere.
         Z: of the platform's Z.
-        free: of Z along the platform's freedoms, its null space of Hk (3-RPS).
+        free: of Z along the platform's degrees of freedom, its null space of Hk (3-RPS).
     """
 
     U: dict[str, Spread]
@@ -76,7 +76,7 @@ def figures(name: str) -> Figures:
         wrong = [assemble_spatial(body, group, printed)[1] for body, group in drawn]
         Z[kind] = spread(map(relative, wrong, right))
         if name == "tripod_3rps":
-            along = [freedoms(group) for _, group in drawn]
+            along = [dofs(group) for _, group in drawn]
             free[kind] = spread(
                 relative(N @ a, N @ b) for N, a, b in zip(along, wrong, right, strict=True)
             )
@@ -94,7 +94,7 @@ def of_legs(legs: Sequence[SpatialLeg], printed: frozenset[str]) -> Spread:
     return spread(relative(leg.U(printed), leg.U()) for leg in legs)
 
 
-def freedoms(legs: Sequence[SpatialLeg]) -> Array:
+def dofs(legs: Sequence[SpatialLeg]) -> Array:
     """Orthonormal rows that span the velocities which the constraints allow."""
     return np.asarray(np.linalg.svd(columns(legs, [[leg.k] for leg in legs]).T)[2][len(legs) :])
 

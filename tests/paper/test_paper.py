@@ -18,9 +18,9 @@ from tests.oracle.projection import project
 from tests.paper.engine import leg_quantities
 from tests.paper.figures import (
     EXAMPLES,
+    dofs,
     errata,
     figures,
-    freedoms,
     leg_table,
     platform_table,
     relative,
@@ -80,7 +80,7 @@ def corrected(sample: Sample) -> tuple[Array, Array, Array]:
         M, Z, _ = assemble_point(point_legs(sample), payload, g)
         return M, Z, np.eye(2)
     legs = spatial_legs(sample)
-    along = freedoms(legs) if sample.manipulator.name == "tripod_3rps" else np.eye(6)
+    along = dofs(legs) if sample.manipulator.name == "tripod_3rps" else np.eye(6)
     return (*assemble_spatial(platform(sample), legs), along)
 
 

@@ -78,7 +78,7 @@ _EVERYWHERE = {
     *(f"space {space}" for space in Space),
     *(f"joint {kind}" for kind in JointKind),
     *(f"platform joint {kind}" for kind in PlatformJointKind),
-    "driven extra",
+    "actuated extra",
     "passive extra",
     "massless link",
     "friction",

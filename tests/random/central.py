@@ -13,7 +13,7 @@ from tests.whole.rewriting import MOVING_ORIGIN, Rewriting, no_shifts
 RESIDUES = (0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6)
 """How far an end that is meant to sit at an origin is off, m."""
 GUIDES = ("Rz0 Ry Px | rigid", "Rz Ry Px | rigid", "Rz0 Ry Px Rx | rigid", "Rz0 Ry Px | U")
-"""Central legs of Tricept and Quadrupod, and others that leave more freedoms."""
+"""Central legs of Tricept and Quadrupod, and others that leave more degrees of freedom."""
 _SHARE = 0.25
 
 
@@ -37,10 +37,10 @@ def central(manipulator: Manipulator, number: int, rng: np.random.Generator) -> 
 
 
 def guided(rng: np.random.Generator) -> Manipulator:
-    """Extensible legs, as many as freedoms or one more, and a passive guide from end to end."""
+    """Extensible legs, as many as degrees of freedom or one more, and a passive guide."""
     guide = str(rng.choice(GUIDES))
     joints, end = guide.split(" | ")
-    freedoms = len(joints.split()) + 2 * (end == "U")  # a cross has two of its own
-    count = freedoms + int(rng.random() < 0.4)
+    dofs = len(joints.split()) + 2 * (end == "U")  # a cross has two of its own
+    count = dofs + int(rng.random() < 0.4)
     drawn = mechanism("spatial", [*["Rz0 Ry Px* | S"] * count, guide], rng, plain=True)
     return central(replace(drawn, name="guided"), count, rng)

@@ -44,7 +44,7 @@ from tests.random.central import guided, with_ends_at_origins
 from tests.random.effects import with_coupling, with_effects, with_efforts
 
 LEG_QUALITY = 0.06
-"""Least reciprocal condition number of a leg's freedoms."""
+"""Least reciprocal condition number of a leg's degrees of freedom."""
 DRIVE_QUALITY = 0.02
 """Least reciprocal condition number of actuators and constraints together."""
 INERTIA_QUALITY = 1e-5
@@ -111,7 +111,7 @@ class _LegPlan:
         end: platform joint.
         present: which components of its offset there are.
         link_axis, platform_axis: a direction's index, or None.
-        missing: freedoms that the leg lacks.
+        missing: degrees of freedom that the leg lacks.
         at_origin: it meets the platform at its origin.
     """
 
@@ -211,10 +211,10 @@ class _Drawing:
     def _owners(self, plans: list[_LegPlan], count: int) -> list[int]:
         """Plan of every leg; legs that would leave the platform no freedom are left out."""
         types, owner = len(plans), []
-        freedoms = task_size(self.space)
+        dofs = task_size(self.space)
         for k in [*range(types), *self.rng.integers(0, types, count - types)]:
-            if plans[k].missing < freedoms:
-                freedoms -= plans[k].missing
+            if plans[k].missing < dofs:
+                dofs -= plans[k].missing
                 owner.append(int(k))
         if not owner:
             raise NothingDrawn
@@ -267,7 +267,7 @@ class _Drawing:
         return joints
 
     def _part(self, macro: str, before: list[_JointPlan]) -> list[_JointPlan]:
-        """One joint, or a joint of several freedoms: concurrent, without mass between."""
+        """One joint, or a joint of several degrees of freedom: concurrent, without mass between."""
         first = self._joint(before)
         if not macro:
             return [first]
@@ -389,7 +389,7 @@ class _Drawing:
             free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
             jacobian = leg_closure(empty, leg, pose, q).joints[:, free]
             if not free or len(free) > len(jacobian):
-                raise OracleError("a leg without or with too many freedoms")
+                raise OracleError("a leg without or with too many degrees of freedom")
             sizes = np.linalg.norm(jacobian, axis=0)
             if sizes.min() < LEG_QUALITY:
                 continue
@@ -490,7 +490,7 @@ class _Drawing:
     # ---- marks -----------------------------------------------------------------------
 
     def _marks(self, found: Manipulator, owner: list[int]) -> Manipulator | None:
-        """The mechanism with actuators: as many as freedoms, more, or fewer; None if singular."""
+        """With as many actuators as degrees of freedom, more, or fewer; None if singular."""
         rng = self.rng
         all_driven = [[True] * len(leg.joints) for leg in found.legs]
         nv = task_size(found.space) + len(extra_indices(found))
@@ -498,8 +498,8 @@ class _Drawing:
         free = project(_actuated(found, all_driven), X, q, np.zeros(nv))
         if not _regular(free.Hk.T) and free.Hk.size:
             return None
-        freedoms = nv - free.Hk.shape[1]
-        if freedoms < 1:
+        dofs = nv - free.Hk.shape[1]
+        if dofs < 1:
             return None
         wish = int(rng.choice([0, 1, 2, -1], p=[0.7, 0.12, 0.1, 0.08]))
         # Marks of each leg, not of each type: every leg may become a type of its own.
@@ -507,11 +507,7 @@ class _Drawing:
         for _ in range(60):
             marks = self._some_marks(found, owner, by_leg=by_leg)
             actuators = sum(map(sum, marks))
-            if (
-                not actuators
-                or actuators > freedoms + max(wish, 0)
-                or actuators < freedoms + min(wish, 0)
-            ):
+            if not actuators or actuators > dofs + max(wish, 0) or actuators < dofs + min(wish, 0):
                 continue
             made = _actuated(found, marks)
             try:

@@ -105,7 +105,7 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             f"{len(manipulator.legs)} legs",
             *(f"joint {joint.kind}" for joint in joints),
             *(f"platform joint {leg.platform_joint.kind}" for leg in manipulator.legs),
-            *("driven extra" if joint.actuated else "passive extra" for joint in joints
+            *("actuated extra" if joint.actuated else "passive extra" for joint in joints
               if joint.extra),
             *("massless link" for joint in joints if joint.link.is_massless),
             *("friction" for joint in joints if joint.friction),

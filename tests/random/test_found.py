@@ -57,10 +57,16 @@ FOUND: dict[str, tuple[str, list[str]]] = {
     "extra joint of a leg with moments": ("spatial", ["Rz* Rt*+ Pt* Rt | U", "Rz* Ry Px* | S"]),
     "angle that parameters fix": ("translational", ["Pz* Rx | U"]),
     "moment on a platform that cannot turn": ("translational", ["Px* Py* | U"]),
-    "two freedoms and a universal joint": ("spatial", ["Px0 Rx* | U"] * 2),
-    "three freedoms and a revolute joint": ("spatial", ["Rz* Ry* Rx | R", "Rz* Ry Px* | S"]),
-    "three freedoms and a rigid joint": ("spatial", ["Rz* Rx* Pt* | rigid"]),
-    "five freedoms and a rigid joint": ("spatial", ["Rz* Ry* Px* Rx Rz* | rigid", "Rz Ry Px* | S"]),
+    "two degrees of freedom and a universal joint": ("spatial", ["Px0 Rx* | U"] * 2),
+    "three degrees of freedom and a revolute joint": (
+        "spatial",
+        ["Rz* Ry* Rx | R", "Rz* Ry Px* | S"],
+    ),
+    "three degrees of freedom and a rigid joint": ("spatial", ["Rz* Rx* Pt* | rigid"]),
+    "five degrees of freedom and a rigid joint": (
+        "spatial",
+        ["Rz* Ry* Px* Rx Rz* | rigid", "Rz Ry Px* | S"],
+    ),
 }
 
 QUICK = ("extra joint of a constrained leg", "moment on a platform that cannot turn")
@@ -93,12 +99,12 @@ R, P = JointKind.REVOLUTE, JointKind.PRISMATIC
 
 
 def joint(
-    kind: JointKind, axis: Vector3, offset: Vector3 = ZERO3, *, driven: bool = False
+    kind: JointKind, axis: Vector3, offset: Vector3 = ZERO3, *, actuated: bool = False
 ) -> Joint:
     rng = np.random.default_rng(len(kind.value + str(axis)))
     body = Body(float(rng.uniform(0.5, 2.0)), vector3(rng.uniform(-0.2, 0.2, 3)),
                 random_inertia(rng, 0.03))  # fmt: skip
-    return Joint(kind, axis, offset, actuated=driven, link=body)
+    return Joint(kind, axis, offset, actuated=actuated, link=body)
 
 
 def arm(
@@ -145,7 +151,7 @@ REVOLUTE, RIGID = PlatformJointKind.REVOLUTE, PlatformJointKind.RIGID
 
 def wrist(second: Vector3, last: Vector3, centre: Vector3) -> Manipulator:
     """3-RRR, all axes through one centre."""
-    chain = [joint(R, Z, driven=True), joint(R, second)]
+    chain = [joint(R, Z, actuated=True), joint(R, second)]
     arms = [arm(chain, REVOLUTE, last, around(k, 0.7, 0.2, 0.1), ZERO3) for k in range(3)]
     q = [[0.3 + 0.1 * k, 0.9] for k in range(3)]
     pose = quaternion_of_vector(np.array([0.1, 0.2, -0.1]))
@@ -154,7 +160,7 @@ def wrist(second: Vector3, last: Vector3, centre: Vector3) -> Manipulator:
 
 def tripteron() -> Manipulator:
     """3-PRRR with parallel axes in every leg: moments on a platform that cannot turn."""
-    chain = [joint(P, Z, driven=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0)),
+    chain = [joint(P, Z, actuated=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0)),
              joint(R, Z, (0.35, 0.0, 0.0))]  # fmt: skip
     arms = [arm(chain, RIGID, None, ALONG[k], (0.05 * k, 0.1, -0.05)) for k in range(3)]
     q = [[0.5, 0.4 + 0.1 * k, 0.9, -1.3 - 0.1 * k] for k in range(3)]
@@ -163,7 +169,7 @@ def tripteron() -> Manipulator:
 
 def three_upu() -> Manipulator:
     """3-UPU in pure translation."""
-    chain = [joint(R, X), joint(R, Y), joint(P, Z, driven=True), joint(R, Y)]
+    chain = [joint(R, X), joint(R, Y), joint(P, Z, actuated=True), joint(R, Y)]
     seats = [vector3(0.2 * around(k)[:, 0]) for k in range(3)]
     arms = [arm(chain, REVOLUTE, X, around(k), seats[k]) for k in range(3)]
     return built(Space.TRANSLATIONAL, arms, [[0.2, 0.3, 0.8, -0.3]] * 3, np.array([0.05, 0.0, 0.9]))
@@ -171,17 +177,17 @@ def three_upu() -> Manipulator:
 
 def planar_leg_in_space() -> Manipulator:
     """A leg that keeps the platform in a plane: one force and two moments; and a free leg."""
-    keeps = arm([joint(R, Z, driven=True), joint(P, X, driven=True)], REVOLUTE, Z,
+    keeps = arm([joint(R, Z, actuated=True), joint(P, X, actuated=True)], REVOLUTE, Z,
                 turned(0.1, 0.2, 0.3), (0.2, 0.1, 0.0))  # fmt: skip
-    chain = [joint(R, Z), joint(R, Y), joint(P, X, driven=True)]
+    chain = [joint(R, Z), joint(R, Y), joint(P, X, actuated=True)]
     free = arm(chain, PlatformJointKind.SPHERICAL, None, turned(0.3, 0.2, 0.1), (0.1, 0.1, 0.2))
     pose = np.array([0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0])
     return built(Space.SPATIAL, [keeps, free], [[0.3, 0.6], [0.3, 0.2, 0.6]], pose)
 
 
 def rollers() -> Manipulator:
-    """Four driven planar legs, each with a roller about its elbow: more actuators than needed."""
-    chain = (joint(R, Z, driven=True), joint(R, Z, (0.4, 0.0, 0.0)))
+    """Four actuated planar legs, each with a roller about its elbow: more actuators than needed."""
+    chain = (joint(R, Z, actuated=True), joint(R, Z, (0.4, 0.0, 0.0)))
     passive = replace(joint(R, Z), extra=True)
     seats = [(0.1, 0.1, 0.0), (-0.1, 0.1, 0.0), (-0.1, -0.2, 0.0), (0.2, -0.1, 0.0)]
     arms = [arm([*chain, passive], REVOLUTE, Z, turned(0.0, 0.0, 1.3 * k), seats[k])
@@ -227,7 +233,7 @@ def test_only_wrenches_that_act_are_constraints(name: str) -> None:
 
 
 def test_a_singular_leg_that_transmits_moments_is_refused() -> None:
-    chain = [joint(P, Z, driven=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0))]
+    chain = [joint(P, Z, actuated=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0))]
     arms = [arm(chain, REVOLUTE, Z, ALONG[k], (0.05 * k, 0.1, -0.05)) for k in range(3)]
     doubled = built(Space.TRANSLATIONAL, arms, [[0.5, 0.4, 0.9]] * 3, np.array([0.1, 0.2, 0.3]))
     with pytest.raises(SpecError, match="the leg is singular at home"):
@@ -235,9 +241,9 @@ def test_a_singular_leg_that_transmits_moments_is_refused() -> None:
 
 
 def rollers_in_space(order: str) -> Manipulator:
-    """Seven driven legs, each with a roller about its tilted elbow: one actuator too many."""
+    """Seven actuated legs, each with a roller about its tilted elbow: one actuator too many."""
     rng = np.random.default_rng(1)
-    elbow, beyond = joint(R, TILTED), [joint(P, X, (0.05, 0.02, 0.01), driven=True)]
+    elbow, beyond = joint(R, TILTED), [joint(P, X, (0.05, 0.02, 0.01), actuated=True)]
     pair = [elbow, replace(elbow, extra=True)]
     if order == "roller first":
         pair.reverse()

@@ -47,8 +47,8 @@ def rates_by_twist(m: Manipulator) -> Array:
     """H^T at home: rates of the actuators per velocity of the platform."""
     motions = motions_at_home(m)
     size = len(TASK_SPACES[m.space].components)
-    driven = [joint.actuated for leg in m.legs for joint in leg.joints]
-    return np.asarray(motions[size:][driven] @ np.linalg.pinv(motions[:size]))
+    actuated = [joint.actuated for leg in m.legs for joint in leg.joints]
+    return np.asarray(motions[size:][actuated] @ np.linalg.pinv(motions[:size]))
 
 
 def test_the_page_has_them_all() -> None:

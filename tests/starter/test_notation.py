@@ -70,7 +70,7 @@ def test_faults(text: str, message: str) -> None:
         ("6-UPS", "planar", "joint 'U' of UPS leaves the plane"),
         ("3-RPS", "planar", ""),
         ("1-RRRR*S", "spatial", ""),
-        ("3-RRRR*RS", "spatial", "4 degrees of freedom of a RRRRRS leg that are not marked extra"),
+        ("3-RRRR*RS", "spatial", "4 degrees of freedom of an RRRRRS leg that are not marked extra"),
     ],
 )
 def test_space_faults(legs: str, space: str, message: str) -> None:

@@ -1,4 +1,4 @@
-"""A starter loads, closes, is driven, and can be generated, for many architectures."""
+"""A starter loads, closes, is actuated, and can be generated, for many architectures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from pne_sym.model.reader import from_text, read_spec
 from pne_sym.starter import PointsFile, Rings, parse_legs, starter_text, write_starter
 from tests.sampling import sampled
 
-# architecture, space, freedoms, actuators, constraints, extra coordinates
+# architecture, space, degrees of freedom, actuators, constraints, extra coordinates
 KNOWN: list[tuple[str, str | None, int, int, int, int]] = [
     ("6-UPS", None, 6, 6, 0, 0),
     ("7-UPS", None, 6, 7, 0, 0),
@@ -209,7 +209,7 @@ def test_joint_points_from_a_file(legs: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("legs", "space", "height", "freedoms"),
+    ("legs", "space", "height", "dofs"),
     [
         ("3-RPS", None, 0.8, 3),
         ("3-UPS+1-UPW", None, 1.3, 3),
@@ -218,12 +218,10 @@ def test_joint_points_from_a_file(legs: str, tmp_path: Path) -> None:
         ("3-UPS", "spherical", 0.8, 3),
     ],
 )
-def test_points_on_circles(
-    legs: str, space: str | None, height: float | None, freedoms: int
-) -> None:
+def test_points_on_circles(legs: str, space: str | None, height: float | None, dofs: int) -> None:
     rings = Rings((0.6, 0.2), (0.0, 120.0, 240.0), (10.0, 130.0, 250.0), height)
     manipulator = from_text(starter_text("mine", legs, space, rings), ".toml", "mine.toml")
-    assert mobility(manipulator).dofs == mobility(manipulator).actuators == freedoms
+    assert mobility(manipulator).dofs == mobility(manipulator).actuators == dofs
     radii = [np.hypot(*leg.base_point[:2]) for leg in manipulator.legs[:3]]
     np.testing.assert_allclose(radii, 0.6, atol=1e-12)
     angles = [math.degrees(math.atan2(*leg.platform_point[1::-1])) for leg in manipulator.legs[:3]]

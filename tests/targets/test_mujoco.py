@@ -231,12 +231,12 @@ def test_inertia_damping_stiffness_armature_payload_and_friction_of_balls() -> N
     X, q, V, A = state()
     spec, m = with_friction(machine(), coulomb=0.0), module(machine())
     p, moved = live_parameters(machine(), spec), move(spec, X, q, V, A)
-    driven = actuated_indices(spec)
+    actuated = actuated_indices(spec)
     full = np.zeros((moved.model.nv, moved.model.nv))
     mujoco.mj_fullM(moved.model, moved.data, full)
     for found, wanted in (
         (m.M(X, p), moved.T.T @ full @ moved.T),
-        (m.H(X, p), moved.T[moved.joints[driven]].T),
+        (m.H(X, p), moved.T[moved.joints[actuated]].T),
         (m.M(X, p) @ A + m.Z(X, V, p), moved.T.T @ moved.force),
         (m.H(X, p) @ m.inverse_dynamics(X, V, A, p), moved.T.T @ moved.force),
     ):

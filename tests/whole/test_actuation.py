@@ -106,13 +106,13 @@ RUN = ("planar, held", "constrained, two extra joints, one surplus actuator", "t
 def spec(name: str) -> Manipulator:
     """The mechanism of a case, with drawn numbers."""
     case = CASES[name]
-    # What is drawn must be regular: with all joints driven that are not extra.
-    driven = [
+    # What is drawn must be regular: with all joints actuated that are not extra.
+    actuated = [
         " ".join(j if "*" in j or "+" in j or len(j) < 2 else j + "*" for j in leg.split())
         for leg in case.legs
     ]
     ends = [leg.rpartition("|")[2] for leg in case.legs]
-    regular = [f"{one.partition('|')[0]}|{end}" for one, end in zip(driven, ends, strict=True)]
+    regular = [f"{one.partition('|')[0]}|{end}" for one, end in zip(actuated, ends, strict=True)]
     drawn = mechanism(case.space, regular, np.random.default_rng(4), plain=case.plain)
     legs = tuple(
         replace(

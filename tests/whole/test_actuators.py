@@ -66,7 +66,7 @@ def test_power_and_momentum(name: str) -> None:
 
 
 def with_motors() -> Manipulator:
-    """Friction everywhere; motors at the legs but the last, which is driven directly."""
+    """Friction everywhere; motors at the legs but the last, which is actuated directly."""
     plain, legs = catalogue("planar_3rpr"), []
     for k, leg in enumerate(plain.legs):
         turn, slide = (replace(joint, friction=Friction(2.0, 3.0, 0.1)) for joint in leg.joints)

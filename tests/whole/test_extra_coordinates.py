@@ -114,11 +114,11 @@ def test_actuators_are_partitioned(name: str, seed: int) -> None:
     """tau . q' of the actuators is V . H tau: H_y tells what they do with the platform held."""
     c = case(name, seed)
     H, rng = c.blocks()[2], np.random.default_rng(seed)
-    driven = c.joints("actuated")
+    actuated = c.joints("actuated")
     for rows in (c.x, c.y, slice(None)):
         V = np.zeros(c.model.NV)
         V[rows] = rng.uniform(-1.0, 1.0, V[rows].shape)
-        rates = c.model.joint_rates(c.state.X, V, c.p)[driven]
+        rates = c.model.joint_rates(c.state.X, V, c.p)[actuated]
         assert np.allclose(H.T @ V, rates, rtol=1e-10, atol=1e-10)
 
 
@@ -258,19 +258,19 @@ def test_a_simulated_second_keeps_its_energy(name: str) -> None:
     model = module(catalogue(name))
     spec = catalogue(name)
     joints = [joint for leg in spec.legs for joint in leg.joints]
-    driven = [k for k, joint in enumerate(joints) if joint.actuated]
+    actuated = [k for k, joint in enumerate(joints) if joint.actuated]
     X, V = np.array(model.HOME_X), np.zeros(model.NV)
     V[model.NW :] = 0.5 * (name in PASSIVE)
-    home = model.inverse_kinematics(X)[driven]
+    home = model.inverse_kinematics(X)[actuated]
     hold = model.inverse_dynamics(X, np.zeros(model.NV), np.zeros(model.NV))
-    slides = np.array([joints[k].kind is JointKind.PRISMATIC for k in driven])
+    slides = np.array([joints[k].kind is JointKind.PRISMATIC for k in actuated])
     gain, damping = np.where(slides, 900, 300), np.where(slides, 60, 6)
     turning = X.size - model.NV == 1
 
     def rate(state: Array, time: float) -> Array:
         X, V = state[: model.NQ], state[model.NQ : -1]
-        q, qd = model.inverse_kinematics(X)[driven], model.joint_rates(X, V)[driven]
-        phase = 2 * np.pi * time + np.arange(len(driven))
+        q, qd = model.inverse_kinematics(X)[actuated], model.joint_rates(X, V)[actuated]
+        phase = 2 * np.pi * time + np.arange(len(actuated))
         wanted = home + 0.04 * (np.sin(phase) - np.sin(phase - 2 * np.pi * time))
         tau = hold + gain * (wanted - q) - damping * qd
         A = model.forward_dynamics(X, V, tau)

@@ -46,15 +46,15 @@ ACCEPTED: dict[str, tuple[str, list[str]]] = {
     "spatial, one joint at U": ("spatial", ["Rz* Ry | U", *[_UPS] * 4]),
     "spatial, four joints at R": ("spatial", ["Rz* Ry Px* Rx | R", *[_UPS] * 3]),
     "spatial, five joints at rigid": ("spatial", ["Rz* Ry Px* Rx Ry | rigid", *[_UPS] * 3]),
-    "translational U, freedoms left out": ("translational", ["Rz* Ry | U", _UPS, _UPS]),
-    "translational R, freedoms left out": ("translational", ["Px* Py* Pz* | R"]),
-    "translational rigid, freedoms left out": (
+    "translational U, degrees of freedom left out": ("translational", ["Rz* Ry | U", _UPS, _UPS]),
+    "translational R, degrees of freedom left out": ("translational", ["Px* Py* Pz* | R"]),
+    "translational rigid, degrees of freedom left out": (
         "translational",
         ["Px* Py* Pz | rigid", "Px Py Pz* | rigid"],
     ),
-    "spherical U, freedoms left out": ("spherical", ["Rz* Ry | U", _UPS, _UPS]),
-    "spherical R, freedoms left out": ("spherical", ["Rz* Ry Px | R", _UPS, _UPS]),
-    "spherical rigid, freedoms left out": ("spherical", ["Rz0* Ry0* Rx* | rigid"]),
+    "spherical U, degrees of freedom left out": ("spherical", ["Rz* Ry | U", _UPS, _UPS]),
+    "spherical R, degrees of freedom left out": ("spherical", ["Rz* Ry Px | R", _UPS, _UPS]),
+    "spherical rigid, degrees of freedom left out": ("spherical", ["Rz0* Ry0* Rx* | rigid"]),
 }
 """Space and platform joint -> legs."""
 
@@ -90,7 +90,7 @@ REFUSED: dict[str, tuple[str, list[str], str]] = {
 RUN = (
     "point R",
     "planar S",
-    "translational R, freedoms left out",
+    "translational R, degrees of freedom left out",
 )
 """In every run: what is derived quickly; functions of the last one take no vector."""
 

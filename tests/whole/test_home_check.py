@@ -85,7 +85,7 @@ def with_parameters(bundle: Bundle, monkeypatch: pytest.MonkeyPatch, **values: A
 
 @pytest.mark.filterwarnings("ignore:planar_3rpr. legs. all actuators held")
 def test_a_leg_that_is_singular_at_home_is_refused(tmp_path: Path) -> None:
-    """Its freedoms are independent, its guards fail all the same: exit 0 and NaN before."""
+    """Its degrees of freedom are independent, its guards fail all the same: NaN before."""
     with pytest.raises(SpecError) as told:
         pne_sym.generate(short(1e-9), tmp_path / "out")
     message = str(told.value)
@@ -231,12 +231,12 @@ def test_too_few_actuators_are_named_once() -> None:
 
 
 def test_singular_actuators_are_told_with_the_reason() -> None:
-    """Two legs driven along one line, the third not at all."""
+    """Two legs actuated along one line, the third not at all."""
     spec = models.catalogue("planar_4rpr")
-    driven = (True, True, False, True)
+    actuated = (True, True, False, True)
     legs = tuple(
         replace(leg, joints=tuple(replace(j, actuated=j.actuated and on) for j in leg.joints))
-        for leg, on in zip(spec.legs, driven, strict=True)
+        for leg, on in zip(spec.legs, actuated, strict=True)
     )
     legs = (legs[0], replace(legs[0]), *legs[2:])  # leg 2 is leg 1 again
     twice = (*spec.home.q[:2], *spec.home.q[:2], *spec.home.q[4:])

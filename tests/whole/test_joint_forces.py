@@ -107,8 +107,8 @@ def test_power_balance(name: str) -> None:
 
     tau = m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **c.guess)
     tau = tau[0] if m.NC else tau
-    driven = m.joint_rates(s.X, s.V, **c.guess)[actuated_indices(spec)]
-    terms = [tau @ driven, s.wrench @ s.V[: m.NW], -c.oracle.dissipation]
+    actuated = m.joint_rates(s.X, s.V, **c.guess)[actuated_indices(spec)]
+    terms = [tau @ actuated, s.wrench @ s.V[: m.NW], -c.oracle.dissipation]
     # Central differences at three steps, extrapolated twice.
     rows = [[(energy(h) - energy(-h)) / (2 * h) for h in (STEP, STEP / 2, STEP / 4)]]
     for k in (4, 16):

@@ -1,4 +1,4 @@
-"""Fewer and more legs than freedoms: 5, 7 and 60 UPS legs."""
+"""Fewer and more legs than degrees of freedom: 5, 7 and 60 UPS legs."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ SEEDS = (0, 4, 6, 8, 24, 62, 9, 45, 64, 90)
 
 
 def single_up() -> Manipulator:
-    """The Tricept's central leg alone, all its joints driven: a serial arm in space."""
+    """The Tricept's central leg alone, all its joints actuated: a serial arm in space."""
     whole = catalogue("tricept")
     leg = whole.legs[-1]
     joints = tuple(replace(joint, actuated=True) for joint in leg.joints)

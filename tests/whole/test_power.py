@@ -28,8 +28,8 @@ def test_power_balance(name: str) -> None:
 
     tau = m.inverse_dynamics(s.X, s.V, s.A, p, wrench=s.wrench, **c.guess)
     tau = tau[0] if m.NC else tau
-    driven = m.joint_rates(s.X, s.V, p, **c.guess)[actuated_indices(c.spec)]
-    power = np.array([tau @ driven, s.wrench @ s.V[: m.NW]])
+    actuated = m.joint_rates(s.X, s.V, p, **c.guess)[actuated_indices(c.spec)]
+    power = np.array([tau @ actuated, s.wrench @ s.V[: m.NW]])
     rates = (energy(STEP) - energy(-STEP)) / (2 * STEP)
     assert abs(power.sum() - rates.sum()) < 1e-7 * np.abs([*power, *rates]).max()
 

@@ -1,4 +1,4 @@
-"""More actuators than freedoms: least effort, weights, forces that cancel each other."""
+"""More actuators than degrees of freedom: least effort, weights, forces that cancel each other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.oracle.specs import State
 
 Array = NDArray[np.float64]
 REDUNDANT = {"planar_4rpr": 1, "fivebar_redundant": 1, "stewart_7ups": 1}
-"""Name -> how many actuators more than freedoms."""
+"""Name -> how many actuators more than degrees of freedom."""
 FREE = {"planar_4rpr_free": "planar_4rpr", "stewart_7ups_free": "stewart_7ups"}
 SEEDS = (1, 2, 3)
 
@@ -148,11 +148,11 @@ def test_no_redundancy_no_null_space() -> None:
     assert model.null_space(np.tile(model.HOME_X, (3, 1))).shape == (3, 6, 0)
 
 
-@pytest.mark.parametrize(("name", "driven"), FREE.items())
+@pytest.mark.parametrize(("name", "actuated"), FREE.items())
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_free_leg_has_no_column_but_its_inertia(name: str, driven: str, seed: int) -> None:
+def test_a_free_leg_has_no_column_but_its_inertia(name: str, actuated: str, seed: int) -> None:
     """Section 3.3: with its actuator off, the same M and Z, and H without a column."""
-    c = case(driven, seed)
+    c = case(actuated, seed)
     free = module(catalogue(name))
     p = live_parameters(catalogue(name), c.spec)
     X, _, V, _, _ = c.state

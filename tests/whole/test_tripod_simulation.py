@@ -1,6 +1,6 @@
 """Platforms with constraints in motion: on their constraints, with their energy accounted for.
 
-A tripod and a five-bar with an offset output are driven for a second by position controllers under
+A tripod and a five-bar with an offset output are moved for a second by position controllers under
 gravity and a wrench.  Two standard stabilisations are shown, both by public functions alone:
 Baumgarte's, and projection of pose and velocity after every step.
 """
@@ -47,10 +47,10 @@ class Rig:
     def __init__(self, name: str) -> None:
         self.model: Any = module(catalogue(name))
         joints = [joint for leg in catalogue(name).legs for joint in leg.joints]
-        self.driven = [k for k, joint in enumerate(joints) if joint.actuated]
+        self.actuated = [k for k, joint in enumerate(joints) if joint.actuated]
         self.X = np.array(self.model.HOME_X)
         self.V = np.zeros(self.model.NV)
-        self.target = self.model.inverse_kinematics(self.X)[self.driven]
+        self.target = self.model.inverse_kinematics(self.X)[self.actuated]
         self.wrench = np.linspace(-3.0, 4.0, self.model.NW)
         hold = self.model.inverse_dynamics(self.X, self.V, self.V, wrench=self.wrench)[0]
         self.hold = hold
@@ -59,9 +59,9 @@ class Rig:
 
     def control(self, X: Array, V: Array, time: float) -> tuple[Array, float]:
         """Actuator forces, and the power of actuators and wrench."""
-        q = self.model.inverse_kinematics(X)[self.driven]
-        qd = self.model.joint_rates(X, V)[self.driven]
-        phase = 2 * np.pi * (1.5 * time + np.arange(len(self.driven)) / 3)
+        q = self.model.inverse_kinematics(X)[self.actuated]
+        qd = self.model.joint_rates(X, V)[self.actuated]
+        phase = 2 * np.pi * (1.5 * time + np.arange(len(self.actuated)) / 3)
         wanted = self.target + self.swing * (np.sin(phase) - np.sin(phase - 3 * np.pi * time))
         tau = self.hold + self.gain * (wanted - q) - 0.15 * self.gain * qd
         return tau, float(tau @ qd + self.wrench @ V)
