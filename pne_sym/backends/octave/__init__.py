@@ -6,7 +6,9 @@ import re
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import FieldView, describe, field_views
+from pne_sym.backends.kernels import kernels
 from pne_sym.backends.octave.functions import Code, column
+from pne_sym.backends.octave.operations import Kernels
 from pne_sym.backends.octave.public import EXPRESSIONS, Public
 from pne_sym.backends.scalar import wrap
 from pne_sym.backends.steps import COMMON
@@ -37,7 +39,8 @@ class OctaveBackend:
     @property
     def operations(self) -> frozenset[str]:
         """Those that are expressions or statements, and those that templates/octave defines."""
-        return defined("octave", r"^function .*= (\w+)\(").union(EXPRESSIONS, COMMON, ["search"])
+        own = defined("octave", r"^function .*= (\w+)\(") | {f.name for f in kernels()}
+        return own.union(EXPRESSIONS, COMMON, ["search"])
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """Path below the model's folder -> text.
@@ -95,6 +98,7 @@ def _facts(bundle: Bundle) -> dict[str, object]:
         "runs": [(f, code.body(f)) for f in program.functions.values()],
         "prepare": code.prepared(),
         "prepared": [code.named(name) for name, _ in program.prepared],
+        "kernels": [(f, Kernels(public.internal)) for f in kernels()],
         "searches": searches.values(),
         "others": public.others,
         "column": column,

@@ -17,7 +17,8 @@ class XpBackend:
     @property
     def operations(self) -> frozenset[str]:
         """Those that are expressions, and those that are methods of the state in templates/xp."""
-        return defined("xp", r"^    def (\w+)\(self").union(Steps.expressions, COMMON)
+        own = (defined(folder, r"^    def (\w+)\(self") for folder in ("xp", "kernels"))
+        return frozenset[str]().union(*own, Steps.expressions, COMMON)
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
