@@ -11,7 +11,14 @@ from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_statements import vector_name
-from pne_sym.backends.c_text import WIDTH, Routine, comment, indented, listing, side_by_side
+from pne_sym.backends.c_text import (
+    WIDTH,
+    Routine,
+    comment,
+    indented,
+    listing,
+    side_by_side,
+)
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Block, Function
 
@@ -176,9 +183,7 @@ class FunctionWriter:
         one = over.call_with({**given, "i": "i + k", "k": "i + k"})
         return [
             f"for (size_t i = 0; i < LEGS({legs}); i += BESIDE({legs})) {{",
-            f"    for (size_t k = 0; k < BESIDE({legs}); ++k) {{",
-            *indented(wrap(one, WIDTH - 12, "    "), 2),
-            "    }",
+            *indented(side_by_side(f"BESIDE({legs})", wrap(one, WIDTH - 12, "    "))),
             "}",
         ]
 
