@@ -11,7 +11,14 @@ from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
 from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_statements import vector_name
-from pne_sym.backends.c_text import WIDTH, Routine, comment, indented, listing
+from pne_sym.backends.c_text import (
+    WIDTH,
+    Routine,
+    comment,
+    indented,
+    listing,
+    side_by_side,
+)
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Block, Function
 
@@ -109,11 +116,12 @@ class FunctionWriter:
         sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
         names = [n for n, k in sizes.items() if k and f" {n}" in words]
         start = " CLEARED" * single
+        real = "real " if single else "ALIGNED real "
         buffers = [f"{n}[{times(sizes[n], w)}]{start}" for n in names]
-        head = listing("real ", buffers, ";") if buffers else []
+        head = listing(real, buffers, ";") if buffers else []
         for block in self.parts.legs:
             buffers = self._given(block, start) if single else self._given_in_lanes(block)
-            head += listing("real ", buffers, ";") if buffers else []
+            head += listing(real, buffers, ";") if buffers else []
         parameters = [
             "const prepared *m",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
@@ -151,7 +159,7 @@ class FunctionWriter:
         """States side by side, up to their sums."""
         parts = [p for p in (self.before, self.between) if p.body]
         calls = [p.call_with({"w": "LANES", "v": "&v"}) for p in parts]
-        loop = ["for (size_t k = 0; k < LANES; ++k) {", *indented([*_values(calls), *calls]), "}"]
+        loop = side_by_side("LANES", [*_values(calls), *calls])
         return [*(loop if calls else []), *self._in_turn()]
 
     def _side_by_side(self) -> list[str]:
@@ -175,9 +183,7 @@ class FunctionWriter:
         one = over.call_with({**given, "i": "i + k", "k": "i + k"})
         return [
             f"for (size_t i = 0; i < LEGS({legs}); i += BESIDE({legs})) {{",
-            f"    for (size_t k = 0; k < BESIDE({legs}); ++k) {{",
-            *indented(wrap(one, WIDTH - 12, "    "), 2),
-            "    }",
+            *indented(side_by_side(f"BESIDE({legs})", wrap(one, WIDTH - 12, "    "))),
             "}",
         ]
 
@@ -226,4 +232,4 @@ def _each(part: Routine, count: str, given: Mapping[str, str]) -> list[str]:
         return []
     if count == "1":
         return [part.call_with({**given, "k": "0"})]
-    return [f"for (size_t k = 0; k < {count}; ++k) {{", f"    {part.call_with(given)}", "}"]
+    return side_by_side(count, [part.call_with(given)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pne_sym.backends.c_text import Routine, in_pairs, indented, listing, statement
+from pne_sym.backends.c_text import Routine, in_pairs, listing, side_by_side, statement
 from pne_sym.backends.orders import GROWTH, SMALLEST, Order
 
 
@@ -74,7 +74,7 @@ def elimination(n: int) -> Routine:
     parameters = ("size_t w", "size_t stride", "const size_t *order", "const real *sizes",
                   *(f"const real *{v}" for v in "ab"),
                   *(f"real *{v}" for v in ("x", "unsure", "total")))  # fmt: skip
-    body = ("for (size_t k = 0; k < w; ++k) {", *indented(lines), "}")
+    body = tuple(side_by_side("w", lines))
     return Routine(f"eliminate_{n}", parameters, body)
 
 

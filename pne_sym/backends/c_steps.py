@@ -99,8 +99,10 @@ class Steps:
         lines += self._outputs()
         if self.work[0]:
             self.buffers.append(self._buffer("work", self.work[1]))
-        head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
-        body = [*head, "status_flags why;", *lines]
+        aligned = "ALIGNED " * self.lanes
+        real = f"{aligned}real "
+        head = [*self.tables, *(listing(real, self.buffers, ";") if self.buffers else [])]
+        body = [*head, f"{aligned}status_flags why;", *lines]
         if self.lanes:
             parameters = [*self._parameters(self.f.inputs), "int *code"]
             return Routine.of(f"{self.f.name}_lanes", parameters, body)
@@ -324,6 +326,7 @@ class Steps:
         if name in ENTRIES:
             entry = ENTRIES[name].format(**fields) if step.operands[0].size else "0"
             body = indented(statement(f"{targets[0]}[i] = {entry}"))
+            lines += ["SHORT_IN_VECTORS"] * self.lanes
             lines += [f"for (size_t i = 0; i < {fields['all']}; ++i) {{", *body, "}"]
         call = (LANES if self.lanes else LANES | SINGLE).get(name, "")
         if "{places}" in call:

@@ -83,6 +83,12 @@ def indented(lines: Iterable[str], by: int = 1) -> list[str]:
     return [f"{'    ' * by}{line}" if line else line for line in lines]
 
 
+def side_by_side(count: str, lines: Iterable[str]) -> list[str]:
+    """Lines for every k of as many legs or states as run side by side, of "w" states or of one."""
+    vectors = f"IN_VECTORS({'LANES' if count == 'w' else count})"
+    return [vectors, f"for (size_t k = 0; k < {count}; ++k) {{", *indented(lines), "}"]
+
+
 def statement(text: str) -> list[str]:
     """A statement, broken at spaces where it is long."""
     return wrap(f"{text};", WIDTH - 8, "    ")
