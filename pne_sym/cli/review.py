@@ -106,10 +106,11 @@ WithC = Annotated[
     bool, typer.Option("--c/--no-c", help="With --run: compile and execute the C too.")
 ]
 Label = Annotated[
-    str,
+    list[str] | None,
     unset(
         "--as PATH",
-        "What A and B are called: a/PATH, b/PATH. For git, which names temporary files.",
+        "What A and B are called: a/PATH, b/PATH; twice where B was renamed. For git, which "
+        "names temporary files.",
     ),
 ]
 Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")]
@@ -123,7 +124,7 @@ def diff(  # noqa: PLR0913, PLR0917 - one option each
     tolerance: Tolerance = 1e-9,
     run: Run = False,
     c: WithC = True,
-    label: Label = "",
+    label: Label = None,
     quiet: Silent = False,
     debug: Debug = False,
 ) -> None:
@@ -150,7 +151,7 @@ def diff(  # noqa: PLR0913, PLR0917 - one option each
 
         if as_json and as_markdown:
             raise InputError("--json and --markdown exclude each other")
-        labels = (f"a/{label}", f"b/{label}") if label else ("", "")
+        labels = (f"a/{label[0]}", f"b/{label[-1]}") if label else ("", "")
         sources = find_source(before, labels[0]), find_source(after, labels[1])
         form = "json" if as_json else "markdown" if as_markdown else "text"
         equal, lines = _answer(*sources, Options(tolerance, run, c), form)

@@ -250,7 +250,13 @@ def _inertia(old: Any, new: Any) -> str:
 
 
 def _percent(old: float, new: float) -> str:
-    return f" ({100.0 * (new - old) / abs(old):+.3g} %)" if old else ""
+    """How much larger; as a factor where a percentage is hard to read."""
+    if not old:
+        return ""
+    ratio = new / old
+    if ratio >= 10.0:
+        return f" ({ratio:.3g} times)"
+    return f" ({100.0 * (new - old) / abs(old):+.3g} %)"
 
 
 def _length(metres: float) -> str:

@@ -190,6 +190,7 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], list[tuple[str, str]]]] = [
         {"gravity": [0, 0, -9.81]},
         [("gravity turned by 90 degrees", "gravity")],
     ),
+    ({"a": 1.5}, {"a": 45.0}, [("a 1.5 -> 45 (30 times)", "a")]),
     (
         {"gravity": [0, -10]},
         {"gravity": [0, -5]},

@@ -70,6 +70,17 @@ def test_the_diff_driver(recipe: str, repository: Path) -> None:
         assert '-  "mass": 12.0,\n+  "mass": 14.0,' in done.stdout
 
 
+def test_a_renamed_file_is_called_by_both_names(repository: Path) -> None:
+    command = re.search(r"^git config diff\.pne\.command .*$", GUIDE, re.MULTILINE)
+    assert command
+    assert shell(command.group(), repository).returncode == 0
+    git(repository, "mv", "my_robot.toml", "its robot.toml")
+    heavier(repository / "its robot.toml")
+    done = shell("git --no-pager diff -M HEAD", repository)
+    assert done.returncode == 0
+    assert "--- a/my_robot.toml\n+++ b/its robot.toml\n" in done.stdout
+
+
 def test_the_driver_lets_a_broken_file_pass(repository: Path) -> None:
     command = re.search(r"^git config diff\.pne\.command .*$", GUIDE, re.MULTILINE)
     assert command

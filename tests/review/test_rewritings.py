@@ -11,6 +11,7 @@ import sympy as sp
 from pne_sym.derivation import Derivation, Equation, Quantity
 from pne_sym.review import diff_text
 from pne_sym.review.difference import Verdict
+from pne_sym.review.programs import SameText
 from pne_sym.vector import Compose, Skew, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector import nodes as n
 from tests.models import bundle, catalogue
@@ -158,3 +159,14 @@ def test_a_model_is_equal_to_itself(name: str) -> None:
     assert verdicts(found) == {}
     assert {b.verdict for b in found.blocks} == {Verdict.IDENTICAL}
     assert diff_text.verdict(found) == "equal: identical text"
+
+
+def test_what_prepared_values_are_is_text_of_the_functions_that_read_them() -> None:
+    program = bundle(catalogue("planar_3rpr")).program
+    first, *others = program.prepare
+    wrong = replace(first.assignments[0], expr=2 * first.assignments[0].expr)
+    changed = replace(first, assignments=(wrong, *first.assignments[1:]))
+    same = SameText(program, replace(program, prepare=(changed, *others)))
+    assert same("pose")
+    assert not all(same(f.name) for f in program.public)
+    assert all(map(SameText(program, replace(program)), (f.name for f in program.public)))
