@@ -14,7 +14,14 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Equation, Output, leg_sums, names_in
+from pne_sym.derivation import (
+    Derivation,
+    Equation,
+    Output,
+    ReciprocalBasis,
+    leg_sums,
+    names_in,
+)
 from pne_sym.lowering import scalars, tensors, vectors
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Builder
@@ -103,6 +110,8 @@ class Lowering(Components):
         """Form the axes of each leg's last link in base axes before anything else."""
         for basis in self.d.bases:
             frame = basis.frames[0]
+            if not basis.rows:  # platform joints that turn about axes ask for all cosines anyway
+                self._keep_lengths_across(basis)
             for vector in basis.vectors:
                 self.ensure(getattr(vector, "name", ""))
             parts = (*basis.duals, *(part for own in basis.moment_duals for part in own))
@@ -111,6 +120,25 @@ class Lowering(Components):
             along = [k for k in range(3) if self.rotation.along(frame, "base", k) is not None]
             for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
                 self.b.keep(self.rotation.axis_column(frame, "base", k))
+
+    def _keep_lengths_across(self, basis: ReciprocalBasis) -> None:
+        """Form the cross products e x S of whose lengths a leg's equations may be made.
+
+        Of some velocity vectors they are the components in base axes, and so, over their lengths,
+        axes of frames.
+        """
+        defined = [self.definition[v.name] for v in basis.vectors if v.name in self.definition]
+        leg_types = {self.d.notation[equation.name].leg_type for equation in defined}
+        for equation in list(self.definition.values()):
+            if self.d.notation[equation.name].leg_type in leg_types:
+                for cross in _lengths_across(equation):
+                    self.b.equation = equation.id
+                    self.b.keep(self.vector(cross, "base"))
+        for equation in defined:
+            for vector in (*_symbols(equation.rhs), equation.lhs):
+                known = partial(self.vector, vector, "base")
+                if self.trials.attempt(known).cost == 0:
+                    known()
 
     def equation_of(self, expr: Any) -> str:
         """Id of the equation to which an expression belongs: its latest name's.
@@ -149,10 +177,18 @@ class Lowering(Components):
         for condition in equation.conditions:
             self.b.guard(
                 condition.status.value,
-                self.scalar(condition.value),
+                self._tested(equation, condition.value),
                 self.scalar(condition.scale),
                 condition.power,
             )
+
+    def _tested(self, equation: Equation, value: Any) -> Atom:
+        """What a condition tests: under a root the square of this, whatever form it took."""
+        factors = sp.Mul.make_args(equation.rhs) if equation.forms else ()
+        if sp.sqrt(value) in factors:
+            root = self._scalars[equation.name]
+            return self.b.mul(root, root)
+        return self.scalar(value)
 
     def _in_order(self, names: Set[str]) -> list[str]:
         """Names in the order in which they are defined, whatever they are."""
@@ -358,3 +394,12 @@ def _symbols(expr: Any) -> list[Any]:
     for arg in getattr(expr, "args", ()):
         found.extend(symbol for symbol in _symbols(arg) if symbol not in found)
     return found
+
+
+def _lengths_across(equation: Equation) -> Iterator[Any]:
+    """Cross products whose length a form of an equation takes."""
+    for form in equation.forms:
+        for factor in sp.Mul.make_args(form) if isinstance(form, sp.Expr) else ():
+            squared = factor.base if factor.is_Pow else None
+            if isinstance(squared, n.Dot) and isinstance(squared.args[0], n.Cross):
+                yield squared.args[0]

@@ -132,14 +132,17 @@ def _cheapest_stores(
     if not outputs:
         return {}, Lowering(derivation, builder)
 
+    cheap = [o for o in outputs if o.array in first]
+    others = [o for o in outputs if o.array not in first]
+
     def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
         builder.keep_nothing()
-        lowering = Lowering(derivation, builder, [o for o in outputs if o.array in first])
+        lowering = Lowering(derivation, builder, cheap)
         if columns:
             lowering.form_tip_axes()
-        made = {output: stores(lowering, output) for output in outputs}
+        made = {output: stores(lowering, output) for output in (*cheap, *others)}
         builder.keep_nothing()
-        cost = builder.cost([s.value for found in made.values() for _, s in found])
+        cost = builder.cost([s.value for output in cheap for _, s in made[output]])
         return cost, (made, lowering)
 
     mark = builder.mark()

@@ -20,7 +20,7 @@ from pne_sym.mechanics.invariants import Invariants
 from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.vector import Dot, Vector, ZeroVector
+from pne_sym.vector import Cross, Dot, Vector, ZeroVector, norm
 
 
 def invert(
@@ -243,8 +243,16 @@ class _Solver:
             K, N = self.eq.named("Kc_#", K, j), self.eq.named("Ks_#", N, j)
         along = sp.S.Zero if along_axis == 0 else Dot(u, e) * axial
         C = self.eq.named("Kr_#", value - along, j)
+        # The axis across x is one of the links beyond, unless extra coordinates turn these.
+        across = fixed and Dot(e, x) == axial and not any(map(g.is_extra, range(j, g.count + 1)))
         root = self._turned(
-            j, K, N, C, method, reaches=fixed and u_m == 1 and self.invariants.reaches(j)
+            j,
+            K,
+            N,
+            C,
+            method,
+            reaches=fixed and u_m == 1 and self.invariants.reaches(j),
+            length=norm(Cross(e, x)) if across else None,
         )
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
@@ -273,7 +281,17 @@ class _Solver:
             A, B = self.eq.named("px_#", A, j), self.eq.named("py_#", B, j)
         return A, B, axial
 
-    def _turned(self, j: int, K: Any, N: Any, C: Any, method: str, *, reaches: bool = False) -> Any:
+    def _turned(
+        self,
+        j: int,
+        K: Any,
+        N: Any,
+        C: Any,
+        method: str,
+        *,
+        reaches: bool = False,
+        length: Any = None,
+    ) -> Any:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
         g = self.g
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
@@ -282,7 +300,9 @@ class _Solver:
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
-            root = self._amplitude(j, sigma * sp.sqrt(K * K + N * N), regular, reaches=reaches)
+            forms = () if length is None else (sigma * length,)
+            value = sigma * sp.sqrt(K * K + N * N)
+            root = self._amplitude(j, value, regular, reaches=reaches, forms=forms)
             self._cosine_sine(j, -N / root, K / root)
             return root
         rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
@@ -292,10 +312,12 @@ class _Solver:
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
         return root
 
-    def _amplitude(self, j: int, value: Any, regular: Condition, *, reaches: bool) -> Any:
+    def _amplitude(
+        self, j: int, value: Any, regular: Condition, *, reaches: bool, forms: tuple[Any, ...]
+    ) -> Any:
         """The root where the right-hand side is zero: the length of a leg that extends along it."""
         if not reaches:
-            return self.eq.named("root_#:amplitude", value, j, conditions=(regular,))
+            return self.eq.named("root_#:amplitude", value, j, conditions=(regular,), forms=forms)
         self.methods[j + 1] = "direct"
         self.q[j + 1] = self.eq("q_#", value, j + 1, conditions=(regular,))
         return self.q[j + 1]

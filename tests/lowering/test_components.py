@@ -12,6 +12,7 @@ from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.components import Lowering
 from pne_sym.vector import Axial, Compose, Skew, TensorSymbol, VectorSymbol
 from tests.lowering.numbers import inputs, run, value
+from tests.models import bundle, catalogue
 
 X, Y = sp.symbols("x y", real=True)
 VALUES = {"x": 1.7, "y": 0.6}
@@ -90,3 +91,13 @@ def test_what_nothing_else_uses_is_left_out(also_stored: bool, operations: int) 
     stored = [of.scalar(output.value) for output in book.outputs]
     builder.keep_nothing()
     assert builder.cost(stored) == operations
+
+
+def test_the_square_of_a_root_is_tested_in_the_form_that_it_took() -> None:
+    """The length across the first axis: another form's would be of values that nothing needs."""
+    for function in bundle(catalogue("stewart")).program.functions.values():
+        block = next(b for b in function.blocks if b.leg_type)
+        made = {a.target: a.expr for a in block.assignments}
+        if {"ups_root_1", "ups_c_1"} & {target.name for target in made}:
+            (check,) = (c for c in block.checks if c.equation == "ups-root_1")
+            assert made[check.value].is_Add, function.name
