@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_leg_parts import LegParts
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_sizes import array_names, count_of, times
@@ -60,13 +61,17 @@ class FunctionWriter:
         self.bundle, self.f, self.name = bundle, function, function.name
         self.parts = Parts(bundle, function, stages, summed=summed)
         self.before, self.between = self.parts.before(), self.parts.between()
-        self.legs = [(b, self.parts.over(b), self.parts.place(b)) for b in self.parts.legs]
+        self.over = [LegParts(self.parts, b) for b in self.parts.legs]
+        self.places = [legs.place() for legs in self.over]
+        self.legs: list[tuple[Block, Routine, Routine]] = []
         self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
 
     def routines(self) -> list[tuple[str, Routine]]:
         """The parts, each with a name that says nothing of the function."""
-        found = [self.before, self.between, *(r for _, *both in self.legs for r in both)]
+        found = [self.before, self.between, *self.places]
+        pieces = (p for legs in self.over for p in legs.pieces())
+        found += [p.routine for p in pieces if p.routine]
         found += [self.after] if self.after else []
         return [(f"any{r.name.removeprefix(self.name)}", r) for r in found]
 
@@ -79,10 +84,15 @@ class FunctionWriter:
             many: and for states side by side.
         """
         lines = comment(f"---- {self.name} ----")
-        for _, routine in self.routines():
+        self.legs = [
+            (legs.block, legs.over(once), place)
+            for legs, place in zip(self.over, self.places, strict=True)
+        ]
+        over = [r for _, *both in self.legs for r in both]
+        for routine in (self.before, self.between, *over, *([self.after] if self.after else [])):
             lines += once.own(routine)
         self.before, self.between = once.of(self.before), once.of(self.between)
-        self.legs = [(b, once.of(over), once.of(place)) for b, over, place in self.legs]
+        self.legs = [(b, over, once.of(place)) for b, over, place in self.legs]
         self.after = once.of(self.after) if self.after else None
         one = self._run("1", self._kind(single))
         lanes = self._run("LANES", self._kind(many)) if many else None

@@ -31,6 +31,10 @@ class Once:
         """What is called: the shared routine, or the routine itself."""
         return self.shared.get(_key(routine), routine)
 
+    def is_shared(self, routine: Routine) -> bool:
+        """Whether several functions have it."""
+        return _key(routine) in self.shared
+
     def own(self, routine: Routine) -> list[str]:
         """The definition of a routine that is not shared, and an empty line."""
         if not routine.body or _key(routine) in self.shared:

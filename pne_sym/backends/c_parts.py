@@ -9,8 +9,7 @@ the sums over the legs, sums[n*w + k]; what a leg gives, terms[n*count + k] and 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable
 
 import sympy as sp
 
@@ -18,12 +17,11 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_halves import Half, halves
 from pne_sym.backends.c_sizes import array_names, times
 from pne_sym.backends.c_stage_texts import stage_routine
-from pne_sym.backends.c_stages import Shared, Stage, Stages
+from pne_sym.backends.c_stages import Shared, Stages
 from pne_sym.backends.c_statements import (
     entries,
     factor,
     headed,
-    leg_input,
     loaded,
     place_text,
     statements,
@@ -37,9 +35,9 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
-from pne_sym.program.slices import is_full, places_of, read_in, slices, symbols
+from pne_sym.program.slices import is_full, places_of, read_in, slices
 
-_STATUSES = ("unreachable", "singular")
+STATUSES = ("unreachable", "singular")
 
 
 class Parts:
@@ -64,7 +62,9 @@ class Parts:
         self.first_checks = [*function.unpack_checks, *(self.first.checks if self.first else ())]
         self.early, self.late = halves(self.slices, stages, self._read_at_once())
 
-    def _place(self, store: Store, index: str, name: str, tables: list[str], legs: int = 1) -> str:
+    def place_of(
+        self, store: Store, index: str, name: str, tables: list[str], legs: int = 1
+    ) -> str:
         """Where an entry stands in its array: the row by the length of rows, and the column."""
         names = array_names(self.bundle, store.array)
         rows, across = zip(*places_of(store, legs), strict=True)
@@ -94,7 +94,7 @@ class Parts:
 
     def _half(self, part: str, half: Half) -> Routine:
         loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
-        shared = Shared(members, "v->", self._prepared(self.f.shared), self.known)
+        shared = Shared(members, "v->", self.prepared(self.f.shared), self.known)
         lines = [stage_routine(self.bundle, self.stages, s).call() for s in half.stages]
         lines += statements(half.own, self.titles, shared, loads)
         for n in half.stored:
@@ -110,18 +110,11 @@ class Parts:
         read += [s.value for s in (self.first.stores if self.first else ())]
         return set[str]().union(*(read_in(sp.sympify(e)) for e in read))
 
-    def _run(self, stages: list[Stage]) -> list[str]:
-        """Calls of stages, which leave what they compute in v."""
-        if not stages:
-            return []
-        calls = [stage_routine(self.bundle, self.stages, s).call(v="&v") for s in stages]
-        return [f"values_{stages[0].part} v;", *calls]
-
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""
         assert self.last is not None
-        loads = self._passed("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
-        shared = Shared(places=self._prepared(self.f.shared), known=self.known)
+        loads = self.passed_at("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
+        shared = Shared(places=self.prepared(self.f.shared), known=self.known)
         lines = statements(self.last.assignments, self.titles, shared, loads)
         lines += self._ends(self.last, self.last.checks, loads, shared)
         return self._routine("after", ("const real *s", "const real *sums"), lines)
@@ -139,10 +132,11 @@ class Parts:
         ]
         return Routine.of(f"{self.name}_{part}", parameters, lines)
 
-    def _passed(self, index: str) -> dict[str, str]:
+    def passed_at(self, index: str) -> dict[str, str]:
+        """What was made before the legs, for the state with this index."""
         return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed)}
 
-    def _prepared(self, names: Iterable[str], index: str = "") -> dict[str, str]:
+    def prepared(self, names: Iterable[str], index: str = "") -> dict[str, str]:
         """The prepared values; names made by the function itself are its own."""
         return {n: f"m->{c_name(n)}{index}" for n in names if n not in self.made}
 
@@ -152,91 +146,28 @@ class Parts:
         """Entries of the output arrays, and flags."""
         rows = []
         for store in block.stores if block else ():
-            place = self._place(store, "", "", [])
+            place = self.place_of(store, "", "", [])
             value = shared.text(store.value)
             text = statement(f"{store.array}[{factor(place)}*w + k] = {value}")
             rows.append((store.equation, [*loaded(loads, store.value), *text]))
         lines = headed(rows, self.titles)
         if self.summed and block and block.stores:
-            lines += statement(f"t->total[k] += {self._summed(block, shared)}")
-        return lines + self._flags(checks, "t->{}[k] +=", loads, shared)
+            lines += statement(f"t->total[k] += {self.summed_up(block, shared)}")
+        return lines + self.flags(checks, "t->{}[k] +=", loads, shared)
 
-    def _summed(self, block: Block, shared: Shared) -> str:
+    def summed_up(self, block: Block, shared: Shared) -> str:
         """The sum of the different values that a block stores."""
         values = [sp.sympify(s.value) for s in block.stores]
         different = dict.fromkeys(-v if v.could_extract_minus_sign() else v for v in values)
         return in_pairs([shared.text(v) for v in different if not v.is_Number] or ["0"])
 
-    # ---- over the legs -----------------------------------------------------------------------
-
-    def over(self, block: Block) -> Routine:
-        """Computes leg i in state j: item k, of the legs of one state or of several states."""
-        leg = block.leg_type
-        tables: list[str] = []
-        prepared = self._prepared(self.f.per_leg.get(leg, ()), "[i]")
-        prepared |= self._prepared(self.f.shared)
-        shared = Shared(self.stages.members(self.name, leg), "v.", prepared, self.known)
-        own = self.stages.own(self.name, block.assignments)
-        reads = symbols(replace(block, assignments=tuple(own)))
-        loads = self._passed("j") | entries(self.bundle, self.f, "j")
-        inputs = [i for i in self.f.leg_inputs.get(leg, ()) if i.symbol.name in reads]
-        loads |= {i.symbol.name: leg_input(self.bundle, i, leg, tables) for i in inputs}
-        lines = self._run(self.stages.used(self.name, leg))
-        lines += statements(own, self.titles, shared, loads)
-        lines += headed(self._of_leg(block, loads, shared), self.titles)
-        rows = {f: f"o[{n}*count + k] =" for f, n in self.flag_rows(block).items()}
-        if "total" in rows:
-            lines += statement(f"{rows['total']} {self._summed(block, shared)}")
-        lines += self._flags(block.checks, rows, loads, shared)
-        parameters = [
-            "const prepared *m",
-            *(f"size_t {n}" for n in ("w", "i", "j", "k", "count")),
-            "int add",
-            "const real *s",
-            *(f"const real *{vector_name(v)}" for v in self.f.inputs),
-            "real *terms",
-            "real *o",
-        ]
-        return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *lines])
-
-    def _of_leg(
-        self, block: Block, loads: dict[str, str], shared: Shared
-    ) -> Iterator[tuple[str, list[str]]]:
-        """What a leg adds to the sums, and its entries, with their equations."""
-        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
-            n = self.sums.index(str(target))
-            term, place = shared.text(value), f"terms[{n}*count + k]"
-            text = f"gather(&{place}, add, {term});  /* {target} */"
-            yield equation, [*loaded(loads, value), text]
-        for n, store in enumerate(block.stores):
-            entry = statement(f"o[{n}*count + k] = {shared.text(store.value)}")
-            yield store.equation, [*loaded(loads, store.value), *entry]
-
-    def place(self, block: Block) -> Routine:
-        """Puts the entries of leg i in state k, which is item `at`, where they belong."""
-        leg, lines = block.leg_type, []
-        tables: list[str] = []
-        for n, store in enumerate(block.stores):
-            legs = self.bundle.leg_counts[leg]
-            place = factor(self._place(store, "i", f"place_{n}", tables, legs))
-            lines.append(f"{store.array}[{place}*w + k] = o[{n}*count + at];")
-        for flag, n in self.flag_rows(block).items():
-            lines.append(f"t->{flag}[k] += o[{n}*count + at];")
-        parameters = [
-            *(f"size_t {n}" for n in ("w", "i", "k", "at", "count")),
-            "const real *o",
-            *(f"real *{a}" for a in self.f.arrays),
-            "status_flags *t",
-        ]
-        return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *lines])
-
     def flag_rows(self, block: Block) -> dict[str, int]:
         """Where the flags of a leg, and the sum of its entries, stand behind these."""
-        flags = [f for f in _STATUSES if any(c.status == f for c in block.checks)]
+        flags = [f for f in STATUSES if any(c.status == f for c in block.checks)]
         flags += ["total"] * bool(self.summed and block.stores)
         return {flag: len(block.stores) + n for n, flag in enumerate(flags)}
 
-    def _flags(
+    def flags(
         self,
         checks: Iterable[Check],
         targets: str | dict[str, str],

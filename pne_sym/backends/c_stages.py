@@ -57,7 +57,7 @@ class Stage:
 
     name: str
     part: str
-    rank: tuple[int, str]
+    rank: tuple[int, int, str]
     numbers: list[int] = field(default_factory=list)
     exported: list[str] = field(default_factory=list)
 
@@ -112,6 +112,7 @@ class Stages:
         self.aliases = {n: e for p in self.parts.values() for n, e in aliases(p.function).items()}
         for name, own in self.parts.items():
             self._number(name, own)
+        self._givers = self._all_givers()
         self.stage_of = self._stages()
         unique = {id(s): s for s in self.stage_of.values()}
         self.stages = sorted(unique.values(), key=lambda s: s.rank)
@@ -177,6 +178,10 @@ class Stages:
             found[k] = stage
         for k in sorted(found):
             found[k].numbers.append(k)
+        for stage in stages.values():
+            if not self._is_common(stage):
+                # what reads the most first: then fewer values wait for their use
+                stage.rank = (*stage.rank[:1], -len(self.known_in(stage)), stage.name)
         return found
 
     def _is_common(self, stage: Stage) -> bool:
@@ -200,6 +205,19 @@ class Stages:
             stage.exported = names
 
     # ---- what is asked ---------------------------------------------------------------------
+
+    def givers(self, part: str, given: object) -> frozenset[str]:
+        """Functions whose legs of a type add this to a sum, or store it."""
+        return self._givers.get((part, given), frozenset())
+
+    def _all_givers(self) -> dict[tuple[str, object], frozenset[str]]:
+        found: dict[tuple[str, object], frozenset[str]] = {}
+        for name, own in self.parts.items():
+            for block in own.legs:
+                for given in (*block.sums, *block.stores):
+                    key = (block.leg_type, given)
+                    found[key] = found.get(key, frozenset()) | {name}
+        return found
 
     def read_before(self, stage: Stage) -> list[str]:
         """Names made before the legs that a stage over the legs reads, but for those of inputs."""
@@ -296,7 +314,7 @@ def _stage(part: str, kind: frozenset[str], users: frozenset[str]) -> Stage:
     words = sorted(users or kind or {"model"})
     rank = _PAIR - len(users) if users else len(kind)
     name = "_".join(["stage", *([part] if part else []), *words])
-    return Stage(name, part, (rank, name))
+    return Stage(name, part, (rank, 0, name))
 
 
 def aliases(function: Function) -> dict[str, str]:

@@ -55,7 +55,7 @@ def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> lis
     lines: list[str] = []
     known = ""
     for equation, own in rows:
-        if equation != known:
+        if equation and equation != known:
             known, title = equation, titles.get(equation)
             named = f"{equation}: named entries" if title is None else f"({equation}) {title}"
             lines += comment(named.rstrip())

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from pne_sym.backends.c_backend import _run
+from pne_sym.backends.c_leg_parts import LegParts
 from pne_sym.backends.c_once import Once
+from pne_sym.backends.c_parts import Parts
+from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_text import Routine
+from pne_sym.program.slices import slices
+from tests.models import bundle, catalogue
 
 A = Routine("A_end", ("real *x",), ("x[0] = 1;",))
 B = Routine("B_end", ("real *x",), ("x[0] = 1;",))
@@ -30,3 +36,22 @@ def test_what_is_alone_keeps_its_name() -> None:
     assert once.of(ALONE) is ALONE
     assert not once.texts()
     assert once.own(ALONE) == [*ALONE.definition(), ""]
+
+
+def test_what_functions_give_alike_is_one_routine_wherever_it_stands() -> None:
+    """Sums of Z stand behind those of M in dynamics, and first in Z; entries of H are in three."""
+    compiled = bundle(catalogue("planar_3rpr"))
+    run = _run(compiled)
+    stages = Stages(run.values())
+    legs = {
+        n: LegParts(Parts(compiled, run[n], stages, summed=True), slices(run[n]).legs[0])
+        for n in ("dynamics", "Z", "H", "required")
+    }
+    pieces = {n: list(own.pieces()) for n, own in legs.items()}
+    found = [r for own in pieces.values() for p in own if (r := p.routine)]
+    once = Once((r.name.partition("_")[2], r) for r in found)
+    calls = {n: [line for p in own for _, lines in p.printed(once) for line in lines]
+             for n, own in pieces.items()}  # fmt: skip
+    assert "sums_rpr(k, count, add, &v, terms);" in calls["Z"]
+    assert "sums_rpr(k, count, add, &v, terms + 6*count);" in calls["dynamics"]
+    assert all("entries_rpr(k, count, &v, o);" in calls[n] for n in ("dynamics", "H", "required"))

@@ -48,3 +48,10 @@ def test_statements_that_share_a_local_value_stay_together() -> None:
     own = [Assignment(sp.Symbol(n), sp.parse_expr(text), "") for n, text in texts.items()]
     first, _ = _closure({"y"}, own, [], Stages([]))
     assert [a.target.name for a in first] == ["x", "y", "z"]
+
+
+def test_what_reads_the_most_is_the_first_of_what_two_functions_share() -> None:
+    """So fewer values wait while the rest is computed: Z, which reads velocities, before M."""
+    run = _run(bundle(catalogue("stewart")))
+    used = [s.name for s in Stages(run.values()).used("dynamics", "ups")]
+    assert used == [f"stage_ups_{n}" for n in ("X", "V_X", "Z_dynamics", "M_dynamics")]
