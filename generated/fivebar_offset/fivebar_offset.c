@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && FIVEBAR_OFFSET_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -160,6 +185,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -186,6 +212,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -245,19 +272,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -305,10 +335,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -360,6 +392,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1205,6 +1238,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1219,6 +1253,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1230,6 +1265,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1239,6 +1275,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1255,6 +1292,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1285,6 +1323,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1329,6 +1368,7 @@ INLINE void saddle(size_t n, size_t p, size_t stride, size_t w, const real *a, c
     }
     for (size_t j = 0; j < p; ++j) {
         for (size_t i = 0; i < n; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 x[(n + j)*row + i*w + k] = b[(i*p + j)*w + k];
             }
@@ -1427,9 +1467,9 @@ typedef struct {
     real crank_q_x, crank_q_y, crank_S_in_turn1_x, crank_S_in_turn1_y, crank_rho2_1, crank_c_1,
         crank_s_1, axis_y_crank_axes1_x, axis_x_crank_axes1_x, crank_n_c_x, crank_n_c_y, crank_w_1_x,
         crank_w_1_y, crank_mu_1_t_3, crank_H_a_1_z, crank_Hk_a_1_z, crank_a_p_x, crank_a_p_y,
-        crank_S_dot_t, crank_S_dot_t_2, crank_S_dot_in_axes1_y, crank_qd_1, crank_u_1_x, crank_u_1_y,
-        crank_qdd_1, crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
-        crank_U_x, crank_U_y, crank_Z_a_t, crank_c_t, crank_c_t_2;
+        crank_S_dot_in_axes1_y, crank_qd_1, crank_u_1_x, crank_u_1_y, crank_qdd_1, crank_U_x,
+        crank_U_y, crank_Z_a_t, crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2,
+        crank_M_aa_t, crank_c_t, crank_c_t_2;
 } values_crank;
 
 INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1493,12 +1533,10 @@ INLINE void stage_crank_V_X(const prepared *m, size_t w, size_t i, size_t j, con
 {
     /* (crank-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    v->crank_S_dot_t = v->crank_q_y*omega_z;
-    v->crank_S_dot_t_2 = v->crank_q_x*omega_z;
     const real t_dot_x = V[0*w + j];
-    const real crank_S_dot_x = t_dot_x - v->crank_S_dot_t;
+    const real crank_S_dot_x = t_dot_x - v->crank_q_y*omega_z;
     const real t_dot_y = V[1*w + j];
-    const real crank_S_dot_y = t_dot_y + v->crank_S_dot_t_2;
+    const real crank_S_dot_y = t_dot_y + v->crank_q_x*omega_z;
     v->crank_S_dot_in_axes1_y = v->axis_x_crank_axes1_x*crank_S_dot_y +
         v->axis_y_crank_axes1_x*crank_S_dot_x;
     /* (crank-qd_1) rate of joint 1 */
@@ -1509,31 +1547,14 @@ INLINE void stage_crank_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->crank_u_1_y = W_p_xx*v->crank_q_y;
 }
 
-INLINE void stage_crank_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_crank *v)
+INLINE void stage_crank_A_V_X(const prepared *m, size_t i, values_crank *v)
 {
     /* (crank-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real crank_S_ddot_x = v->crank_a_p_x - v->crank_S_dot_t_2*omega_z;
-    const real crank_S_ddot_y = v->crank_a_p_y - v->crank_S_dot_t*omega_z;
+    const real crank_S_ddot_x = v->crank_a_p_x + v->crank_u_1_x;
+    const real crank_S_ddot_y = v->crank_a_p_y + v->crank_u_1_y;
     /* (crank-qdd_1) acceleration of joint 1 */
     v->crank_qdd_1 = m->crank_w_1_in_axes1_y[i]*(v->axis_x_crank_axes1_x*crank_S_ddot_y +
         v->axis_y_crank_axes1_x*crank_S_ddot_x);
-}
-
-INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
-{
-    /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real crank_Q_t = v->axis_y_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
-    v->crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
-    v->crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
-    v->crank_Q_yy =
-        v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
-    /* (M_ta) coupling block of M */
-    v->crank_M_ta_t = v->crank_Q_xy*v->crank_q_x - v->crank_Q_xx*v->crank_q_y;
-    v->crank_M_ta_t_2 = v->crank_Q_yy*v->crank_q_x - v->crank_Q_xy*v->crank_q_y;
-    /* (M_aa) rotational block of M */
-    v->crank_M_aa_t = v->crank_M_ta_t_2*v->crank_q_x - v->crank_M_ta_t*v->crank_q_y;
 }
 
 INLINE void stage_crank_Z_dynamics(const prepared *m, size_t i, values_crank *v)
@@ -1551,6 +1572,21 @@ INLINE void stage_crank_Z_dynamics(const prepared *m, size_t i, values_crank *v)
     v->crank_U_y = v->axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
     /* (Z_a) rotational part of Z */
     v->crank_Z_a_t = v->crank_U_y*v->crank_q_x - v->crank_U_x*v->crank_q_y;
+}
+
+INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
+{
+    /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real crank_Q_t = v->axis_y_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
+    v->crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
+    v->crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
+    v->crank_Q_yy =
+        v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*m->crank_d_G_in_axes1_yy[i];
+    /* (M_ta) coupling block of M */
+    v->crank_M_ta_t = v->crank_Q_xy*v->crank_q_x - v->crank_Q_xx*v->crank_q_y;
+    v->crank_M_ta_t_2 = v->crank_Q_yy*v->crank_q_x - v->crank_Q_xy*v->crank_q_y;
+    /* (M_aa) rotational block of M */
+    v->crank_M_aa_t = v->crank_M_ta_t_2*v->crank_q_x - v->crank_M_ta_t*v->crank_q_y;
 }
 
 INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank *v)
@@ -1574,8 +1610,8 @@ typedef struct {
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
         rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
-        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
-        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+        rrr_U_x, rrr_U_y, rrr_Z_a_t, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2,
+        rrr_M_aa_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1712,44 +1748,6 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
-        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-    /* (M_ta) coupling block of M */
-    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
-    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
-}
-
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-u_1) centripetal acceleration of the connection point */
@@ -1801,6 +1799,44 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
+}
+
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
@@ -1838,6 +1874,77 @@ INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const rea
     t->unreachable[k] += o[3*count + at];
     t->singular[k] += o[4*count + at];
     t->total[k] += o[5*count + at];
+}
+
+INLINE void any_sums_crank(size_t k, size_t count, int add, const values_crank *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->crank_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->crank_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->crank_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->crank_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->crank_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->crank_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_crank_2(size_t k, size_t count, int add, const values_crank *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->crank_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->crank_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->crank_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_crank(size_t k, size_t count, const values_crank *v, real *o)
+{
+    /* (crank-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->crank_w_1_x;
+    o[1*count + k] = v->crank_w_1_y;
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->crank_H_a_1_z;
+}
+
+INLINE void any_entries_crank_2(size_t k, size_t count, const values_crank *v, real *o)
+{
+    /* (crank-n_c) direction of the constraint force */
+    o[0*count + k] = v->crank_n_c_x;
+    o[1*count + k] = v->crank_n_c_y;
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->crank_Hk_a_1_z;
+}
+
+INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
+{
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_w_1_x;
+    o[1*count + k] = v->rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rrr_H_a_1_z;
 }
 
 INLINE void any_place_crank(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1902,8 +2009,8 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    stage_crank_M_dynamics(m, i, &v);
     stage_crank_Z_dynamics(m, i, &v);
+    stage_crank_M_dynamics(m, i, &v);
     /* (crank-rel_o) remainder of: acceleration of the connection point left to the joint
        accelerations */
     const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*v.crank_u_1_x -
@@ -1911,36 +2018,16 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.crank_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.crank_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[8*count + k], add, v.crank_Z_a_t);  /* Z_a_z_of_legs */
-    /* (crank-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crank_w_1_x;
-    o[1*count + k] = v.crank_w_1_y;
-    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.crank_H_a_1_z;
-    /* (crank-n_c) direction of the constraint force */
-    o[3*count + k] = v.crank_n_c_x;
-    o[4*count + k] = v.crank_n_c_y;
-    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.crank_Hk_a_1_z;
+    any_sums_crank(k, count, add, &v, terms);
+    any_sums_crank_2(k, count, add, &v, terms + 6*count);
+    any_entries_crank(k, count, &v, o);
+    any_entries_crank_2(k, count, &v, o + 3*count);
     /* (crank-gamma_c1) */
     o[6*count + k] = crank_gamma_c1;
-    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
-        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_gamma_c1));
     o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_gamma_c1));
 }
 
 INLINE void dynamics_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -1963,59 +2050,43 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_M_dynamics(m, i, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    stage_rrr_M_dynamics(m, i, &v);
+    any_sums_rrr(k, count, add, &v, terms);
+    any_sums_rrr_2(k, count, add, &v, terms + 6*count);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2049,9 +2120,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         dynamics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
@@ -2077,9 +2150,10 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[8*LANES], sums[9*LANES];
-    real o_crank[9*LANES];
-    real o_rrr[6*LANES];
+    ALIGNED real s[8*LANES], sums[9*LANES];
+    ALIGNED real o_crank[9*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         dynamics_before(m, LANES, k, X, V, &v, s);
@@ -2087,21 +2161,26 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_crank(LANES, k, k, LANES, o_crank, H, Hk, constraint_bias, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2123,15 +2202,7 @@ INLINE void M_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_crank(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
@@ -2142,36 +2213,28 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rrr(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2197,9 +2260,11 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         M_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
@@ -2223,30 +2288,36 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[5*LANES], sums[6*LANES];
-    real o_crank[LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real s[5*LANES], sums[6*LANES];
+    ALIGNED real o_crank[LANES];
+    ALIGNED real o_rrr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, sums, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crank(k, k, LANES, o_crank, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2273,11 +2344,7 @@ INLINE void Z_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
     stage_crank_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.crank_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.crank_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[2*count + k], add, v.crank_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_crank_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
@@ -2289,26 +2356,22 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rrr_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2327,9 +2390,11 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Z_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, V, terms_crank, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
@@ -2354,9 +2419,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[6*LANES], sums[3*LANES];
-    real o_crank[LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real o_crank[LANES];
+    ALIGNED real o_rrr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, V, &v, s);
@@ -2364,21 +2430,26 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crank(k, k, LANES, o_crank, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2390,14 +2461,10 @@ INLINE void H_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    /* (crank-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crank_w_1_x;
-    o[1*count + k] = v.crank_w_1_y;
-    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.crank_H_a_1_z;
-    o[4*count + k] = v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z);
+    any_entries_crank(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[4*count + k] = v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z);
 }
 
 INLINE void H_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
@@ -2415,15 +2482,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2433,9 +2496,11 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         H_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
@@ -2450,25 +2515,30 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[3*LANES];
-    real o_crank[5*LANES];
-    real o_rrr[6*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[5*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_place_crank(LANES, k, k, LANES, o_crank, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
@@ -2481,14 +2551,10 @@ INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t i, size_t j, size_
 {
     values_crank v;
     stage_crank_X(m, w, i, j, s, X, &v);
-    /* (crank-n_c) direction of the constraint force */
-    o[0*count + k] = v.crank_n_c_x;
-    o[1*count + k] = v.crank_n_c_y;
-    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.crank_Hk_a_1_z;
-    o[4*count + k] = v.crank_n_c_x + (v.crank_n_c_y + v.crank_Hk_a_1_z);
+    any_entries_crank_2(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[4*count + k] = v.crank_n_c_x + (v.crank_n_c_y + v.crank_Hk_a_1_z);
 }
 
 INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
@@ -2507,6 +2573,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
     real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         Hk_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -2518,16 +2585,19 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_place_crank(LANES, k, k, LANES, o_crank, Hk, t);
         }
@@ -2550,9 +2620,9 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t i, si
     const real crank_gamma_c1 = m->crank_n_c_in_axes1_x[i]*crank_rel_o_in_axes1_x;
     /* (crank-gamma_c1) */
     o[0*count + k] = crank_gamma_c1;
-    o[2*count + k] = crank_gamma_c1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[2*count + k] = crank_gamma_c1;
 }
 
 INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t count, const real
@@ -2570,6 +2640,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraint_bias_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
@@ -2581,16 +2652,19 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[3*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[3*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_legs_crank(m, LANES, i, k, k, LANES, s, X, V, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_place_crank(LANES, k, k, LANES, o_crank, constraint_bias, t);
         }
@@ -2626,25 +2700,17 @@ INLINE void required_legs_crank(const prepared *m, size_t w, size_t i, size_t j,
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    stage_crank_A_V_X(m, w, i, j, V, &v);
+    stage_crank_A_V_X(m, i, &v);
     stage_crank_legs_required(m, i, &v);
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, v.crank_c_t);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.crank_c_t_2);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, crank_R_a_t);  /* R_a_z_of_legs */
-    /* (crank-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crank_w_1_x;
-    o[1*count + k] = v.crank_w_1_y;
-    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.crank_H_a_1_z;
-    /* (crank-n_c) direction of the constraint force */
-    o[3*count + k] = v.crank_n_c_x;
-    o[4*count + k] = v.crank_n_c_y;
-    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.crank_Hk_a_1_z;
+    any_entries_crank(k, count, &v, o);
+    any_entries_crank_2(k, count, &v, o + 3*count);
     o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
@@ -2684,14 +2750,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
     /* (R_a) */
     gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -2706,7 +2768,7 @@ INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_t = sums[3*w + k];
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
@@ -2715,7 +2777,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y + R_t_y_of_legs - R_t_t_2;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2735,12 +2797,14 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crank))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
             required_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), 0, s, X, V, A,
                 terms_crank, o_crank);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
                 o_rrr);
@@ -2767,9 +2831,10 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[6*LANES], sums[5*LANES];
-    real o_crank[7*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[6*LANES], sums[5*LANES];
+    ALIGNED real o_crank[7*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, V, &v, s);
@@ -2777,21 +2842,26 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 5*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_crank(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_crank(LANES, k, k, LANES, o_crank, H, Hk, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2807,9 +2877,9 @@ INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t i,
     const real crank_q_1 = angle(v.crank_s_1, v.crank_c_1);
     /* (crank-q_1) */
     o[0*count + k] = crank_q_1;
-    o[2*count + k] = crank_q_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[2*count + k] = crank_q_1;
 }
 
 INLINE void inverse_kinematics_place_crank(size_t w, size_t k, size_t at, size_t count, const real
@@ -2833,9 +2903,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
     o[1*count + k] = rrr_q_2;
-    o[4*count + k] = rrr_q_1 + rrr_q_2;
-    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -2855,9 +2925,11 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         inverse_kinematics_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
@@ -2872,25 +2944,30 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[3*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[3*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_crank(LANES, k, k, LANES, o_crank, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
         }
@@ -2906,9 +2983,9 @@ INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t i, size_t
     stage_crank_V_X(m, w, i, j, s, V, &v);
     /* (crank-qd_1) rate of joint 1 */
     o[0*count + k] = v.crank_qd_1;
-    o[2*count + k] = v.crank_qd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[2*count + k] = v.crank_qd_1;
 }
 
 INLINE void joint_rates_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -2929,10 +3006,10 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -2953,9 +3030,11 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_rates_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
     }
@@ -2970,25 +3049,30 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[3*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[3*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_crank(m, LANES, i, k, k, LANES, s, X, V, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_crank(LANES, k, k, LANES, o_crank, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
         }
@@ -3003,12 +3087,12 @@ INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t i
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    stage_crank_A_V_X(m, w, i, j, V, &v);
+    stage_crank_A_V_X(m, i, &v);
     /* (crank-qdd_1) acceleration of joint 1 */
     o[0*count + k] = v.crank_qdd_1;
-    o[2*count + k] = v.crank_qdd_1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[2*count + k] = v.crank_qdd_1;
 }
 
 INLINE void joint_accelerations_place_crank(size_t w, size_t k, size_t at, size_t count, const
@@ -3031,10 +3115,10 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_qdd_2;
-    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3055,9 +3139,11 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         joint_accelerations_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
     }
@@ -3072,25 +3158,30 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[3*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[3*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_crank(m, LANES, i, k, k, LANES, s, X, V, A, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_crank(LANES, k, k, LANES, o_crank, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
         }
@@ -3108,9 +3199,9 @@ INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t i, size_t
         m->crank_platform_joint_offset_x[i] + v.crank_S_in_turn1_y*v.crank_s_1);
     /* (crank-phi_c1) */
     o[0*count + k] = crank_phi_c1;
-    o[2*count + k] = crank_phi_c1;
     o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[2*count + k] = crank_phi_c1;
 }
 
 INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -3127,6 +3218,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         constraints_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), s, X, o_crank);
     }
@@ -3138,16 +3230,19 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_crank[3*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_crank[3*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_legs_crank(m, LANES, i, k, k, LANES, s, X, o_crank);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_place_crank(LANES, k, k, LANES, o_crank, constraints, t);
         }
@@ -3162,7 +3257,7 @@ INLINE void legs_legs_crank(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_crank_X(m, w, i, j, s, X, &v);
     stage_crank_A_X(w, j, A, &v);
     stage_crank_V_X(m, w, i, j, s, V, &v);
-    stage_crank_A_V_X(m, w, i, j, V, &v);
+    stage_crank_A_V_X(m, i, &v);
     stage_crank_legs_required(m, i, &v);
     /* (crank-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3214,9 +3309,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-w_1) reciprocal vector 1 */
     o[2*count + k] = v.rrr_w_1_x;
     o[3*count + k] = v.rrr_w_1_y;
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3242,11 +3337,13 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crank))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
             legs_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), s, X, V, A, o_crank);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
         }
@@ -3308,8 +3405,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3331,12 +3428,14 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crank))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crank); ++k) {
             potential_legs_crank(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank,
                 o_crank);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
                 o_rrr);
@@ -3380,29 +3479,21 @@ INLINE void condition_legs_crank(const prepared *m, size_t w, size_t i, size_t j
     /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
     const real crank_pivot_size = magnitude(v.crank_rho2_1);
     const real crank_pivot_root = root(crank_pivot_size*m->inv_crank_root_1_t[i]);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real crank_spread_t = m->b_c_in_platform_x - m->crank_platform_point_x[i];
     const real crank_spread_t_2 = m->b_c_in_platform_y - m->crank_platform_point_y[i];
     const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
         crank_spread_t_2*crank_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, crank_spread_t_3);  /* spread_crank */
-    /* (crank-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crank_w_1_x;
-    o[1*count + k] = v.crank_w_1_y;
-    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.crank_H_a_1_z;
-    /* (crank-n_c) direction of the constraint force */
-    o[3*count + k] = v.crank_n_c_x;
-    o[4*count + k] = v.crank_n_c_y;
-    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.crank_Hk_a_1_z;
+    any_entries_crank(k, count, &v, o);
+    any_entries_crank_2(k, count, &v, o + 3*count);
     /* (crank-root_1) */
     o[6*count + k] = crank_pivot_root;
-    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
-        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_pivot_root));
     o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
+    o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+        v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_pivot_root));
 }
 
 INLINE void condition_place_crank(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3436,19 +3527,15 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
     /* (spread) */
     gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
     /* (rrr-G) */
     o[3*count + k] = rrr_least_pivots;
     o[4*count + k] = v.rrr_disc_1;
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-        v.rrr_disc_1));
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3466,7 +3553,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_crank = sums[0*w + k];
     const real spread_rrr = sums[1*w + k];
     const real spread_ = root(R(0.5)*spread_crank + R(0.5)*spread_rrr);
@@ -3484,9 +3571,11 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_crank))
     for (size_t k = 0; k < LEGS(LEGS_OF_crank); ++k) {
         condition_legs_crank(m, 1, k, 0, k, LEGS(LEGS_OF_crank), 0, s, X, terms_crank, o_crank);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
@@ -3523,8 +3612,8 @@ int fivebar_offset_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3546,8 +3635,8 @@ int fivebar_offset_Z(const prepared *m, const real *X, const real *V, real *Z_ou
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3570,8 +3659,8 @@ int fivebar_offset_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3593,8 +3682,8 @@ int fivebar_offset_Hk(const prepared *m, const real *X, real *Hk_out)
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], Hk[NV*NC*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
@@ -3616,8 +3705,8 @@ int fivebar_offset_constraints(const prepared *m, const real *X, real *constrain
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[NQ*LANES], constraints[LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], constraints[LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
@@ -3641,8 +3730,8 @@ int fivebar_offset_constraint_bias(const prepared *m, const real *X, const real 
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3665,8 +3754,8 @@ int fivebar_offset_inverse_kinematics(const prepared *m, const real *X, real *q_
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3689,8 +3778,8 @@ int fivebar_offset_joint_rates(const prepared *m, const real *X, const real *V, 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3715,8 +3804,8 @@ int fivebar_offset_joint_accelerations(const prepared *m, const real *X, const r
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3749,9 +3838,9 @@ int fivebar_offset_dynamics(const prepared *m, const real *X, const real *V, rea
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
-        constraint_bias[LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES],
+        Hk[NV*NC*LANES], constraint_bias[LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3767,6 +3856,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3848,16 +3938,17 @@ int fivebar_offset_inverse_dynamics(const prepared *m, const real *X, const real
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
-        solve_1[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES],
+        beside_1[NV*NV*LANES] = {0}, solve_1[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3875,6 +3966,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
 INLINE void eliminate_4(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3993,11 +4085,11 @@ int fivebar_offset_forward_dynamics(const prepared *m, const real *X, const real
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[LANES], times_1[NV*LANES] = {0},
-        add_1[NV*LANES], subtract_1[NV*LANES], negative_1[LANES], join_1[4*LANES] = {0}, solve_1[((NV
-        + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[LANES],
+        times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[LANES],
+        join_1[4*LANES] = {0}, solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4005,12 +4097,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < LANES; ++i) {
         negative_1[i] = -constraint_bias[i];
     }

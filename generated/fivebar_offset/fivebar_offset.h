@@ -205,7 +205,7 @@ int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_
 size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
 
-/* Accelerations of all joints. 94 mul, 53 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A (NV).
+/* Accelerations of all joints. 93 mul, 53 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A (NV).
    Out: accelerations (NJ). */
 int fivebar_offset_joint_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
@@ -223,7 +223,7 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
     fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 160 mul, 103 add, 3 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 158 mul, 103 add, 3 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -255,7 +255,7 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
     const fivebar_offset_real *wrench, fivebar_offset_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 138 mul, 78 add, 3 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
+   forces of inverse_dynamics. 137 mul, 78 add, 3 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
    X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fivebar_offset_real *X,
     const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real *wrench,
@@ -371,7 +371,7 @@ int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fiveb
 size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 94 mul, 53 add, 3 div, 2 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 93 mul, 53 add, 3 div, 2 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int fivebar_offset_actuator_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,

@@ -1974,10 +1974,8 @@ def _run_dynamics(m, X, V):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
-        crank_S_dot_x = t_dot_x - crank_S_dot_t
-        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_x = t_dot_x - crank_q_y*omega_z
+        crank_S_dot_y = t_dot_y + crank_q_x*omega_z
         crank_S_dot_in_axes1_y = (
         axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
@@ -2942,10 +2940,8 @@ def _run_constraint_bias(m, X, V):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
-        crank_S_dot_x = t_dot_x - crank_S_dot_t
-        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_x = t_dot_x - crank_q_y*omega_z
+        crank_S_dot_y = t_dot_y + crank_q_x*omega_z
         crank_S_dot_in_axes1_y = (
         axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
@@ -2967,7 +2963,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 160 mul, 103 add, 3 div, 2 sqrt, 0 trig
+# required: 158 mul, 103 add, 3 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3044,20 +3040,21 @@ def _run_required(m, X, V, A):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
         # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
         crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
         crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
         # (crank-a_p) acceleration of the connection point without its centripetal part
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
+        crank_S_ddot_x = crank_a_p_x + crank_u_1_x
+        crank_S_ddot_y = crank_a_p_y + crank_u_1_y
         # (crank-qdd_1) acceleration of joint 1
         crank_qdd_1 = (
         crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
@@ -3400,10 +3397,8 @@ def _run_joint_rates(m, X, V):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
-        crank_S_dot_x = t_dot_x - crank_S_dot_t
-        crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
+        crank_S_dot_x = t_dot_x - crank_q_y*omega_z
+        crank_S_dot_y = t_dot_y + crank_q_x*omega_z
         crank_S_dot_in_axes1_y = (
         axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
@@ -3485,7 +3480,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 94 mul, 53 add, 3 div, 2 sqrt, 0 trig
+# joint_accelerations: 93 mul, 53 add, 3 div, 2 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3515,6 +3510,8 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_2
     ok = True
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
@@ -3542,14 +3539,15 @@ def _run_joint_accelerations(m, X, V, A):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
         # (crank-a_p) acceleration of the connection point without its centripetal part
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
+        crank_S_ddot_x = crank_a_p_x + crank_u_1_x
+        crank_S_ddot_y = crank_a_p_y + crank_u_1_y
         # (crank-qdd_1) acceleration of joint 1
         crank_qdd_1 = (
         crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
@@ -3708,7 +3706,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 138 mul, 78 add, 3 div, 2 sqrt, 0 trig
+# legs: 137 mul, 78 add, 3 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3741,6 +3739,8 @@ def _run_legs(m, X, V, A):
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
     out_constraint_direction = m.zeros("constraint_direction")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
@@ -3769,20 +3769,21 @@ def _run_legs(m, X, V, A):
         # (crank-S_dot) velocity of the connection point
         axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
         axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        crank_S_dot_t = crank_q_y*omega_z
-        crank_S_dot_t_2 = crank_q_x*omega_z
         # (crank-n_c) direction of the constraint force
         crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
         crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
         # (crank-w_1) reciprocal vector 1
         crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
         crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
+        # (crank-u_1) centripetal acceleration of the connection point
+        crank_u_1_x = W_p_xx*crank_q_x
+        crank_u_1_y = W_p_xx*crank_q_y
         # (crank-a_p) acceleration of the connection point without its centripetal part
         crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
         crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_S_dot_t_2*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_S_dot_t*omega_z
+        crank_S_ddot_x = crank_a_p_x + crank_u_1_x
+        crank_S_ddot_y = crank_a_p_y + crank_u_1_y
         # (crank-qdd_1) acceleration of joint 1
         crank_qdd_1 = (
         crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +

@@ -97,13 +97,12 @@ typedef struct {
 typedef struct {
     /* 2 legs of type rpr */
     fivebar_prismatic_real rpr_J_group_1_in_axes1_zz[2], rpr_Sigma_1_in_axes1_xx[2],
-            rpr_Sigma_1_in_axes1_yy[2], rpr_acc_2_t[2], rpr_acc_2_t_2[2], rpr_base_frame_xx[2],
-            rpr_base_frame_xy[2], rpr_base_frame_yx[2], rpr_base_frame_yy[2], rpr_base_point_x[2],
-            rpr_base_point_y[2], rpr_branch_1[2], rpr_h_1_in_spec1_x[2], rpr_h_1_in_spec1_y[2],
-            rpr_h_2_in_spec1_x[2], rpr_h_2_in_spec1_y[2], rpr_h_group_1_in_axes1_x[2],
-            rpr_h_group_1_in_axes1_y[2], rpr_link1_mass[2], rpr_link2_mass[2],
-            rpr_platform_point_x[2], rpr_platform_point_y[2], rpr_potential_t[2],
-            rpr_potential_t_2[2];
+            rpr_Sigma_1_in_axes1_yy[2], rpr_base_frame_xx[2], rpr_base_frame_xy[2],
+            rpr_base_frame_yx[2], rpr_base_frame_yy[2], rpr_base_point_x[2], rpr_base_point_y[2],
+            rpr_branch_1[2], rpr_h_1_in_spec1_x[2], rpr_h_1_in_spec1_y[2], rpr_h_2_in_spec1_x[2],
+            rpr_h_2_in_spec1_y[2], rpr_h_group_1_in_axes1_x[2], rpr_h_group_1_in_axes1_y[2],
+            rpr_link1_mass[2], rpr_link2_mass[2], rpr_platform_point_x[2], rpr_platform_point_y[2],
+            rpr_potential_t[2], rpr_potential_t_2[2], rpr_potential_t_3[2], rpr_potential_t_4[2];
     fivebar_prismatic_real Z_p_x, Z_p_y, b_c_in_platform_x, b_c_in_platform_y, gravity_x, gravity_y,
             h_star_x, h_star_y, legs_size, m_star, spread_t;
 } fivebar_prismatic_model;
@@ -176,7 +175,7 @@ size_t fivebar_prismatic_dynamics_batch(const fivebar_prismatic_model *model, si
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M,
     fivebar_prismatic_real *Z, fivebar_prismatic_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 86 mul, 58 add, 2 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 82 mul, 58 add, 2 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int fivebar_prismatic_inverse_dynamics(const fivebar_prismatic_model *model, const
@@ -208,7 +207,7 @@ size_t fivebar_prismatic_complete_acceleration_batch(const fivebar_prismatic_mod
     *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 88 mul, 54 add, 2 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
+   forces of inverse_dynamics. 84 mul, 54 add, 2 div, 2 sqrt, 0 trig; inverse dynamics apart. In:
    X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (2 x 3). */
 int fivebar_prismatic_leg_reactions(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,

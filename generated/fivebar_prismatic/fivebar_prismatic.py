@@ -464,9 +464,6 @@ def _prepare(p):
     # (rpr-h_2) first moment of link 2 about the connection point
     rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
     rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
     rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x
     rpr_J_group_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
@@ -496,8 +493,10 @@ def _prepare(p):
     rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
     rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y
     # (potential) potential energy
-    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
     h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
     h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
@@ -564,11 +563,10 @@ def _prepare(p):
         (gravity_x, gravity_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -603,13 +601,13 @@ def _prepare(p):
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -618,11 +616,11 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
-                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+                    rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+                    rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+                    rpr_potential_t_2, rpr_potential_t_3, rpr_potential_t_4,),
                 ),
             ),
         ),
@@ -1579,16 +1577,18 @@ def _run_dynamics(m, X, V):
         rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-B_1_o) remainder of the acceleration tensor of link 1
         rpr_B_1_o_in_axes1_xy = inv_rpr_q_2*rpr_bias_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_phi_2_t
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
-            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
+        rpr_g_in_axes1_x*rpr_h_group_1_in_axes1_y - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx
+            - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
+            rpr_g_in_axes1_y*rpr_h_group_1_in_axes1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
@@ -1758,16 +1758,18 @@ def _run_Z(m, X, V):
         rpr_bias_in_axes1_y = 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-B_1_o) remainder of the acceleration tensor of link 1
         rpr_B_1_o_in_axes1_xy = inv_rpr_q_2*rpr_bias_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_t*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_phi_2_t
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
-            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
+        rpr_g_in_axes1_x*rpr_h_group_1_in_axes1_y - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx
+            - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
+            rpr_g_in_axes1_y*rpr_h_group_1_in_axes1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = rpr_W_1_t*rpr_h_2_in_spec1_y
@@ -1838,7 +1840,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 86 mul, 58 add, 2 div, 2 sqrt, 0 trig
+# required: 82 mul, 58 add, 2 div, 2 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -1870,10 +1872,10 @@ def _run_required(m, X, V, A):
     R_t_t, R_t_t_2 = [0.0] * 2
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
@@ -1885,9 +1887,6 @@ def _run_required(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -1906,8 +1905,8 @@ def _run_required(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
@@ -2104,10 +2103,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 88 mul, 54 add, 2 div, 2 sqrt, 0 trig
+# legs: 84 mul, 54 add, 2 div, 2 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y = shared
     X_0 = X[0]
     X_1 = X[1]
     V_0 = V[0]
@@ -2128,11 +2128,10 @@ def _run_legs(m, X, V, A):
     out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
@@ -2144,9 +2143,6 @@ def _run_legs(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -2165,8 +2161,8 @@ def _run_legs(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
@@ -2222,11 +2218,11 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
-            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
-            rpr_potential_t_2,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+            rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,
+            rpr_potential_t_3, rpr_potential_t_4,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
@@ -2241,22 +2237,20 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
-        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
-        rpr_potential_t_3 = (
-        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+        rpr_potential_t_5 = (
+        (rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x +
+            rpr_h_2_in_spec1_x + rpr_link1_mass*(rpr_c_1*rpr_potential_t_3 +
+            rpr_potential_t_4*rpr_s_1)) + (rpr_c_1*rpr_potential_t_2 -
+            rpr_potential_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_4 - rpr_potential_t_3*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_q_2) > _TOLERANCE *
             0.75)
         )
         # (potential) potential energy
-        potential_t_2 += rpr_potential_t_3
+        potential_t_2 += rpr_potential_t_5
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy

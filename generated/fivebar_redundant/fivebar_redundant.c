@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && FIVEBAR_REDUNDANT_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -160,6 +185,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -186,6 +212,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -245,19 +272,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -305,10 +335,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -360,6 +392,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1292,6 +1325,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1306,6 +1340,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1317,6 +1352,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1326,6 +1362,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1342,6 +1379,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1372,6 +1410,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1572,8 +1611,8 @@ typedef struct {
         inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
         rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x,
         rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t, rrr_bias_in_axes2_x, rrr_c_t,
-        rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_U_x, rrr_U_y,
-        rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+        rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x,
+        rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
@@ -1690,38 +1729,6 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_x =
-        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
-        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
-        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
-        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
-        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
-        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
-        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-}
-
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-qdd_1_o) remainder of: acceleration of joint 1 */
@@ -1788,6 +1795,38 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
         rrr_G_in_axes2_y;
 }
 
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_x =
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
+        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+}
+
 typedef struct {
     real rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_c_2, rrr_leg1_s_2_t,
         axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x, rrr_leg1_d_2_in_axes2_x,
@@ -1796,9 +1835,9 @@ typedef struct {
         rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y,
         rrr_leg1_mu_1_t_3, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qd_1_t,
         rrr_leg1_qd_2, rrr_leg1_bias_t, rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t, rrr_leg1_c_t_2,
-        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_yy, rrr_leg1_Q_xy, rrr_leg1_U_x,
-        rrr_leg1_U_y, rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
-        rrr_leg1_c_in_axes2_y;
+        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_U_x, rrr_leg1_U_y, rrr_leg1_acc_2_in_axes2_x,
+        rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x, rrr_leg1_c_in_axes2_y, rrr_leg1_Q_xx,
+        rrr_leg1_Q_yy, rrr_leg1_Q_xy;
 } values_rrr_leg1;
 
 INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, const real *X,
@@ -1939,44 +1978,6 @@ INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v
         v->rrr_leg1_qdd_1_t*v->rrr_leg1_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
-{
-    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
-    const real rrr_leg1_d_Gamma_2_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
-        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_J_2_in_spec2_zz[i] -
-        rrr_leg1_d_Gamma_2_t_2);
-    /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real rrr_leg1_d_Gamma_1_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
-        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_Jc_1_in_axes1_zz[i] -
-        rrr_leg1_d_Gamma_2_t_2);
-    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
-    const real rrr_leg1_d_c_in_axes2_xy =
-        v->inv_rrr_leg1_r_1_in_axes2_y*m->rrr_leg1_d_Gamma_2_in_axes2_y[i] -
-        m->rrr_leg1_d_phi_2_in_axes2_xy[i] -
-        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
-    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x -
-        m->rrr_leg1_d_c_in_axes2_yy[i] -
-        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x +
-        m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_2_in_axes2_x -
-        v->inv_rrr_leg1_r_1_in_axes2_y);
-    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-    const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
-        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
-    const real rrr_leg1_Q_t_4 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
-        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
-    v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
-    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-}
-
 INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
     /* (rrr_leg1-qdd_1_o) remainder of: acceleration of joint 1 */
@@ -2051,6 +2052,44 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
 }
 
+INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
+    const real rrr_leg1_d_Gamma_2_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_J_2_in_spec2_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
+    /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_d_Gamma_1_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_Jc_1_in_axes1_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
+    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real rrr_leg1_d_c_in_axes2_xy =
+        v->inv_rrr_leg1_r_1_in_axes2_y*m->rrr_leg1_d_Gamma_2_in_axes2_y[i] -
+        m->rrr_leg1_d_phi_2_in_axes2_xy[i] -
+        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
+    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_leg1_Q_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x -
+        m->rrr_leg1_d_c_in_axes2_yy[i] -
+        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x +
+        m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_2_in_axes2_x -
+        v->inv_rrr_leg1_r_1_in_axes2_y);
+    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+    const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
+    const real rrr_leg1_Q_t_4 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+    v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+}
+
 INLINE void any_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
     *H, status_flags *t)
 {
@@ -2073,6 +2112,55 @@ INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const rea
     t->total[k] += o[4*count + at];
 }
 
+INLINE void any_sums_rrr_leg1(size_t k, size_t count, int add, const values_rrr_leg1 *v, real
+    *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+}
+
+INLINE void any_sums_rrr_leg1_2(size_t k, size_t count, int add, const values_rrr_leg1 *v, real
+    *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_leg1_U_y);  /* Z_t_y_of_legs */
+}
+
+INLINE void any_entries_rrr_leg1(size_t k, size_t count, const values_rrr_leg1 *v, real *o)
+{
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_leg1_w_1_x;
+    o[1*count + k] = v->rrr_leg1_w_1_y;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[2*count + k] = v->rrr_leg1_w_2_x;
+    o[3*count + k] = v->rrr_leg1_w_2_y;
+}
+
+INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
+}
+
+INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
+}
+
+INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
+{
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_w_1_x;
+    o[1*count + k] = v->rrr_w_1_y;
+}
+
 INLINE void any_place_rrr_leg1_2(size_t k, size_t at, size_t count, const real *o, status_flags
     *t)
 {
@@ -2089,27 +2177,17 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-    stage_rrr_leg1_M_dynamics(m, i, &v);
     stage_rrr_leg1_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[3*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[2*count + k] = v.rrr_leg1_w_2_x;
-    o[3*count + k] = v.rrr_leg1_w_2_y;
-    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
-        v.rrr_leg1_w_2_y);
+    stage_rrr_leg1_M_dynamics(m, i, &v);
+    any_sums_rrr_leg1(k, count, add, &v, terms);
+    any_sums_rrr_leg1_2(k, count, add, &v, terms + 3*count);
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+        v.rrr_leg1_w_2_y);
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2118,33 +2196,26 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_M_dynamics(m, i, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (Z_t) */
-    gather(&terms[3*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    stage_rrr_M_dynamics(m, i, &v);
+    any_sums_rrr(k, count, add, &v, terms);
+    any_sums_rrr_2(k, count, add, &v, terms + 3*count);
+    any_entries_rrr(k, count, &v, o);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_t_x_of_legs = sums[3*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
     const real Z_t_y_of_legs = sums[4*w + k];
@@ -2168,9 +2239,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)]
         CLEARED;
     real terms_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
@@ -2194,26 +2267,31 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real sums[5*LANES];
-    real o_rrr_leg1[7*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real sums[5*LANES];
+    ALIGNED real o_rrr_leg1[7*LANES];
+    ALIGNED real o_rrr[5*LANES];
     clear(sums, 5*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, sums, M, Z, t);
     }
@@ -2226,14 +2304,11 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    any_sums_rrr_leg1(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2242,19 +2317,16 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
+    any_sums_rrr(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
@@ -2274,9 +2346,11 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
         CLEARED;
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     }
@@ -2300,26 +2374,31 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real sums[3*LANES];
-    real o_rrr_leg1[2*LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real sums[3*LANES];
+    ALIGNED real o_rrr_leg1[2*LANES];
+    ALIGNED real o_rrr[2*LANES];
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, X, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, sums, M, t);
     }
@@ -2333,13 +2412,11 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_rrr_leg1_X(m, w, i, j, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     stage_rrr_leg1_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    any_sums_rrr_leg1_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2349,18 +2426,16 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
+    any_sums_rrr_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
     const real Z_t_y_of_legs = sums[1*w + k];
@@ -2377,9 +2452,11 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
         CLEARED;
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     }
@@ -2403,26 +2480,31 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real sums[2*LANES];
-    real o_rrr_leg1[2*LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real sums[2*LANES];
+    ALIGNED real o_rrr_leg1[2*LANES];
+    ALIGNED real o_rrr[2*LANES];
     clear(sums, 2*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(m, LANES, k, sums, Z, t);
     }
@@ -2434,18 +2516,13 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, X, &v);
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[2*count + k] = v.rrr_leg1_w_2_x;
-    o[3*count + k] = v.rrr_leg1_w_2_y;
-    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
-        v.rrr_leg1_w_2_y);
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+        v.rrr_leg1_w_2_y);
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2453,22 +2530,22 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, X, &v);
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    any_entries_rrr(k, count, &v, o);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, o_rrr);
     }
@@ -2483,20 +2560,24 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real o_rrr_leg1[7*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real o_rrr_leg1[7*LANES];
+    ALIGNED real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr_leg1(m, LANES, i, k, k, LANES, X, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr(m, LANES, i, k, k, LANES, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
@@ -2533,19 +2614,14 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
         v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[2*count + k] = v.rrr_leg1_w_2_x;
-    o[3*count + k] = v.rrr_leg1_w_2_y;
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -2577,12 +2653,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     /* (R_t) */
     gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
+    any_entries_rrr(k, count, &v, o);
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -2596,7 +2670,7 @@ INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2616,12 +2690,14 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
         CLEARED;
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             required_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A,
                 terms_rrr_leg1, o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr,
                 o_rrr);
@@ -2659,10 +2735,10 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     o[0*count + k] = rrr_leg1_q_1;
     /* (rrr_leg1-q_2) */
     o[1*count + k] = rrr_leg1_q_2;
-    o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
@@ -2688,9 +2764,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
     o[1*count + k] = rrr_q_2;
-    o[4*count + k] = rrr_q_1 + rrr_q_2;
-    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -2707,9 +2783,11 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, o_rrr);
     }
@@ -2724,20 +2802,24 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr_leg1(m, LANES, i, k, k, LANES, X, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
         }
@@ -2755,11 +2837,11 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
     o[0*count + k] = -v.rrr_leg1_qd_1_t;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_leg1_qd_2;
-    o[4*count + k] = v.rrr_leg1_qd_1_t + v.rrr_leg1_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = v.rrr_leg1_qd_1_t + v.rrr_leg1_qd_2;
 }
 
 INLINE void joint_rates_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -2782,10 +2864,10 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
-    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -2803,9 +2885,11 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, V, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     }
@@ -2820,20 +2904,24 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr_leg1(m, LANES, i, k, k, LANES, X, V, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr(m, LANES, i, k, k, LANES, X, V, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
         }
@@ -2853,11 +2941,11 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
     o[0*count + k] = -v.rrr_leg1_qdd_1_t;
     /* (rrr_leg1-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_leg1_qdd_2;
-    o[4*count + k] = v.rrr_leg1_qdd_1_t + v.rrr_leg1_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = v.rrr_leg1_qdd_1_t + v.rrr_leg1_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
@@ -2882,10 +2970,10 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_qdd_2;
-    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -2903,9 +2991,11 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 {
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     }
@@ -2920,20 +3010,24 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr_leg1(m, LANES, i, k, k, LANES, X, V, A, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, X, V, A, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
         }
@@ -2968,10 +3062,10 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     o[4*count + k] = v.rrr_leg1_w_2_x;
     o[5*count + k] = v.rrr_leg1_w_2_y;
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3011,9 +3105,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-w_1) reciprocal vector 1 */
     o[2*count + k] = v.rrr_w_1_x;
     o[3*count + k] = v.rrr_w_1_y;
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3035,12 +3129,14 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             legs_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), X, V, A,
                 o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
         }
@@ -3082,9 +3178,9 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3102,8 +3198,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3123,12 +3219,14 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             potential_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, X,
                 terms_rrr_leg1, o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
         }
@@ -3172,28 +3270,23 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_least_pivots =
         lesser(root(m->inv_rrr_leg1_rho2_1_t[i]*rrr_leg1_pivot_size),
         m->inv_rrr_leg1_size[i]*rrr_leg1_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rrr_leg1_spread_t = m->b_c_in_platform_x - m->rrr_leg1_platform_point_x[i];
     const real rrr_leg1_spread_t_2 = m->b_c_in_platform_y - m->rrr_leg1_platform_point_y[i];
     const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
         rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, rrr_leg1_spread_t_3);  /* spread_rrr_leg1 */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[2*count + k] = v.rrr_leg1_w_2_x;
-    o[3*count + k] = v.rrr_leg1_w_2_y;
+    any_entries_rrr_leg1(k, count, &v, o);
     /* (rrr_leg1-G) */
     o[4*count + k] = rrr_leg1_least_pivots;
     o[5*count + k] = v.rrr_leg1_disc_1;
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_w_2_x)) +
-        (v.rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_w_2_x)) +
+        (v.rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
 }
 
 INLINE void condition_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -3227,16 +3320,14 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
     /* (spread) */
     gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
+    any_entries_rrr(k, count, &v, o);
     /* (rrr-G) */
     o[2*count + k] = rrr_least_pivots;
     o[3*count + k] = v.rrr_disc_1;
-    o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3253,7 +3344,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rrr = sums[1*w + k];
     const real spread_rrr_leg1 = sums[0*w + k];
     const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
@@ -3269,9 +3360,11 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         condition_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     }
@@ -3308,8 +3401,8 @@ int fivebar_redundant_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3331,8 +3424,8 @@ int fivebar_redundant_Z(const prepared *m, const real *X, const real *V, real *Z
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3355,8 +3448,8 @@ int fivebar_redundant_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3378,8 +3471,8 @@ int fivebar_redundant_inverse_kinematics(const prepared *m, const real *X, real 
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3402,8 +3495,8 @@ int fivebar_redundant_joint_rates(const prepared *m, const real *X, const real *
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3428,8 +3521,8 @@ int fivebar_redundant_joint_accelerations(const prepared *m, const real *X, cons
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3459,8 +3552,8 @@ int fivebar_redundant_dynamics(const prepared *m, const real *X, const real *V, 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3504,6 +3597,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
 INLINE void eliminate_2(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3564,10 +3658,10 @@ int fivebar_redundant_forward_dynamics(const prepared *m, const real *X, const r
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3575,9 +3669,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

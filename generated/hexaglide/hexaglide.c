@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HEXAGLIDE_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -161,6 +186,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -187,6 +213,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -246,19 +273,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -306,10 +336,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -361,6 +393,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1188,6 +1221,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1204,6 +1238,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1213,6 +1248,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1239,6 +1275,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1269,6 +1306,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1580,11 +1618,11 @@ typedef struct {
         pus_qd_2, pus_qd_3, pus_W_3_in_axes3_yz, pus_W_3_in_axes3_xz, pus_W_3_in_axes3_xy,
         pus_bias_in_axes3_x, pus_bias_in_axes3_y, pus_bias_in_axes3_z, pus_mu_3_t_4, pus_mu_3_t_5,
         pus_mu_3_t_6, pus_c_t, pus_c_t_2, pus_c_t_3, pus_S_ddot_in_axes3_x, pus_S_ddot_in_axes3_y,
-        pus_S_ddot_in_axes3_z, pus_qdd_1, pus_qdd_2_t, pus_qdd_3_t, pus_Q_xx, pus_Q_yy, pus_Q_t_13,
-        pus_Q_xy, pus_Q_xz, pus_Q_yz, pus_M_ta_t, pus_M_ta_t_2, pus_M_ta_t_3, pus_M_ta_t_5,
-        pus_M_ta_t_6, pus_M_ta_t_7, pus_M_ta_t_8, pus_M_ta_t_9, pus_M_aa_t, pus_M_aa_t_2,
-        pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6, pus_U_x, pus_U_y, pus_U_z, pus_Z_a_t,
-        pus_Z_a_t_2, pus_Z_a_t_3, pus_acc_3_in_axes3_x, pus_acc_3_in_axes3_y, pus_acc_3_in_axes3_z,
+        pus_S_ddot_in_axes3_z, pus_qdd_1, pus_qdd_2_t, pus_qdd_3, pus_U_x, pus_U_y, pus_U_z,
+        pus_Z_a_t, pus_Z_a_t_2, pus_Z_a_t_3, pus_Q_xx, pus_Q_yy, pus_Q_t_13, pus_Q_xy, pus_Q_xz,
+        pus_Q_yz, pus_M_ta_t, pus_M_ta_t_2, pus_M_ta_t_3, pus_M_ta_t_5, pus_M_ta_t_6, pus_M_ta_t_7,
+        pus_M_ta_t_8, pus_M_ta_t_9, pus_M_aa_t, pus_M_aa_t_2, pus_M_aa_t_3, pus_M_aa_t_4,
+        pus_M_aa_t_5, pus_M_aa_t_6, pus_acc_3_in_axes3_x, pus_acc_3_in_axes3_y, pus_acc_3_in_axes3_z,
         pus_c_in_axes3_x, pus_c_in_axes3_y, pus_c_in_axes3_z;
 } values_pus;
 
@@ -1774,8 +1812,105 @@ INLINE void stage_pus_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     /* (pus-qdd_2) acceleration of joint 2 */
     v->pus_qdd_2_t = v->pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - v->pus_qdd_1*v->pus_s_2);
     /* (pus-qdd_3) acceleration of joint 3 */
-    v->pus_qdd_3_t = m->pus_w_3_in_axes3_y[i]*(v->pus_e_1_in_axes3_y*v->pus_qdd_1 -
+    v->pus_qdd_3 = -m->pus_w_3_in_axes3_y[i]*(v->pus_e_1_in_axes3_y*v->pus_qdd_1 -
         pus_rel_in_axes3_y);
+}
+
+INLINE void stage_pus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_pus *v)
+{
+    /* (pus-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real pus_u_1_x = omega_y*v->pus_S_dot_t_3 - omega_z*v->pus_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real pus_u_1_y = omega_z*v->pus_S_dot_t - omega_x*v->pus_S_dot_t_3;
+    const real pus_u_1_z = omega_x*v->pus_S_dot_t_2 - omega_y*v->pus_S_dot_t;
+    const real pus_u_1_in_axes3_x = v->axis_x_pus_axes3_x*pus_u_1_x +
+        v->axis_x_pus_axes3_y*pus_u_1_y + v->axis_x_pus_axes3_z*pus_u_1_z;
+    const real pus_u_1_in_axes3_y = v->axis_y_pus_axes3_x*pus_u_1_x +
+        v->axis_y_pus_axes3_y*pus_u_1_y + v->axis_y_pus_axes3_z*pus_u_1_z;
+    const real pus_u_1_in_axes3_z = v->axis_z_pus_axes3_x*pus_u_1_x +
+        v->axis_z_pus_axes3_y*pus_u_1_y + v->axis_z_pus_axes3_z*pus_u_1_z;
+    /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x - v->pus_bias_in_axes3_x;
+    const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - v->pus_bias_in_axes3_y;
+    const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - v->pus_bias_in_axes3_z;
+    /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v->pus_w_1_in_axes3_x;
+    /* (pus-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real pus_qdd_2_o_t = v->pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
+        pus_qdd_1_o*v->pus_s_2);
+    /* (pus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real pus_qdd_3_o = -m->pus_w_3_in_axes3_y[i]*(v->pus_e_1_in_axes3_y*pus_qdd_1_o -
+        pus_rel_o_in_axes3_y);
+    /* (pus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real pus_alpha_2_o_t = v->pus_e_2_in_axes3_x*pus_qdd_2_o_t;
+    const real pus_alpha_2_o_in_axes3_y = v->pus_J_3_t_10*pus_qdd_2_o_t;
+    /* (pus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real pus_alpha_3_o_in_axes3_x = v->pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
+    const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - v->pus_W_3_in_axes3_xz;
+    /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real pus_B_3_o_in_axes3_xy = v->pus_W_3_in_axes3_xy - pus_qdd_3_o;
+    const real pus_B_3_o_in_axes3_yx = v->pus_W_3_in_axes3_xy + pus_qdd_3_o;
+    const real pus_B_3_o_in_axes3_zx = v->pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
+    const real pus_B_3_o_in_axes3_zy = v->pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
+    /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - m->pus_g_in_axes0_x[i];
+    /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - v->pus_g_in_axes3_x;
+    const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - v->pus_g_in_axes3_y;
+    const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z - v->pus_g_in_axes3_z;
+    /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
+        pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] - v->pus_mu_3_t_4 -
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t +
+        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
+        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i];
+    const real pus_mu_3_o_in_axes3_y = pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
+        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i] - v->pus_mu_3_t_5 +
+        pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
+        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y -
+        pus_B_3_o_in_axes3_zx*m->pus_Sigma_3_in_axes3_xx[i] -
+        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i];
+    const real pus_mu_3_o_in_axes3_z = pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] +
+        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] - v->pus_mu_3_t_6 +
+        pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] -
+        pus_B_3_o_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
+        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t -
+        m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
+    /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real pus_G_o_t = v->pus_w_2_in_axes3_z*(v->pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+        v->pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
+    const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*m->pus_w_3_in_axes3_y[i];
+    /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real pus_c_o_in_axes3_x = v->pus_c_t +
+        pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
+        pus_alpha_2_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
+        v->pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*m->pus_link1_mass[i] -
+        pus_G_o_in_axes3_y*v->pus_e_1_in_axes3_y - pus_G_o_t*v->pus_s_2);
+    const real pus_c_o_in_axes3_y = -v->pus_c_t_2 -
+        pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
+        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - pus_G_o_in_axes3_y;
+    const real pus_c_o_in_axes3_z = v->pus_c_t_3 +
+        pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i] -
+        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i] + pus_G_o_t;
+    /* (pus-U) velocity and gravity terms of the leg force */
+    v->pus_U_x = -v->axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
+        v->axis_z_pus_axes3_x*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_x*pus_c_o_in_axes3_x;
+    v->pus_U_y = -v->axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
+        v->axis_z_pus_axes3_y*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_y*pus_c_o_in_axes3_x;
+    v->pus_U_z = -v->axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
+        v->axis_z_pus_axes3_z*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_z*pus_c_o_in_axes3_x;
+    /* (Z_a) rotational part of Z */
+    v->pus_Z_a_t = v->pus_U_z*v->pus_q_y - v->pus_U_y*v->pus_q_z;
+    v->pus_Z_a_t_2 = v->pus_U_x*v->pus_q_z - v->pus_U_z*v->pus_q_x;
+    v->pus_Z_a_t_3 = v->pus_U_y*v->pus_q_x - v->pus_U_x*v->pus_q_y;
 }
 
 INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
@@ -1878,103 +2013,6 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
     v->pus_M_aa_t_6 = v->pus_M_ta_t_2*v->pus_q_y + v->pus_M_ta_t_6*v->pus_q_x;
 }
 
-INLINE void stage_pus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_pus *v)
-{
-    /* (pus-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real pus_u_1_x = omega_y*v->pus_S_dot_t_3 - omega_z*v->pus_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real pus_u_1_y = omega_z*v->pus_S_dot_t - omega_x*v->pus_S_dot_t_3;
-    const real pus_u_1_z = omega_x*v->pus_S_dot_t_2 - omega_y*v->pus_S_dot_t;
-    const real pus_u_1_in_axes3_x = v->axis_x_pus_axes3_x*pus_u_1_x +
-        v->axis_x_pus_axes3_y*pus_u_1_y + v->axis_x_pus_axes3_z*pus_u_1_z;
-    const real pus_u_1_in_axes3_y = v->axis_y_pus_axes3_x*pus_u_1_x +
-        v->axis_y_pus_axes3_y*pus_u_1_y + v->axis_y_pus_axes3_z*pus_u_1_z;
-    const real pus_u_1_in_axes3_z = v->axis_z_pus_axes3_x*pus_u_1_x +
-        v->axis_z_pus_axes3_y*pus_u_1_y + v->axis_z_pus_axes3_z*pus_u_1_z;
-    /* (pus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x - v->pus_bias_in_axes3_x;
-    const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - v->pus_bias_in_axes3_y;
-    const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - v->pus_bias_in_axes3_z;
-    /* (pus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v->pus_w_1_in_axes3_x;
-    /* (pus-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real pus_qdd_2_o_t = v->pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
-        pus_qdd_1_o*v->pus_s_2);
-    /* (pus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real pus_qdd_3_o = -m->pus_w_3_in_axes3_y[i]*(v->pus_e_1_in_axes3_y*pus_qdd_1_o -
-        pus_rel_o_in_axes3_y);
-    /* (pus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real pus_alpha_2_o_t = v->pus_e_2_in_axes3_x*pus_qdd_2_o_t;
-    const real pus_alpha_2_o_in_axes3_y = v->pus_J_3_t_10*pus_qdd_2_o_t;
-    /* (pus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real pus_alpha_3_o_in_axes3_x = v->pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
-    const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - v->pus_W_3_in_axes3_xz;
-    /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real pus_B_3_o_in_axes3_xy = v->pus_W_3_in_axes3_xy - pus_qdd_3_o;
-    const real pus_B_3_o_in_axes3_yx = v->pus_W_3_in_axes3_xy + pus_qdd_3_o;
-    const real pus_B_3_o_in_axes3_zx = v->pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
-    const real pus_B_3_o_in_axes3_zy = v->pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
-    /* (pus-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - m->pus_g_in_axes0_x[i];
-    /* (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - v->pus_g_in_axes3_x;
-    const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - v->pus_g_in_axes3_y;
-    const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z - v->pus_g_in_axes3_z;
-    /* (pus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*m->pus_J_3_in_spec3_xy[i] -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_z[i] -
-        pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] - v->pus_mu_3_t_4 -
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_t +
-        pus_B_3_o_in_axes3_zx*m->pus_J_3_in_spec3_xz[i] +
-        pus_B_3_o_in_axes3_zy*m->pus_Sigma_3_in_axes3_yy[i];
-    const real pus_mu_3_o_in_axes3_y = pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_y[i] -
-        pus_acc_3_o_in_axes3_z*m->pus_h_3_in_spec3_x[i] - v->pus_mu_3_t_5 +
-        pus_B_3_o_in_axes3_xy*m->pus_J_3_in_spec3_yz[i] +
-        m->pus_Sigma_3_in_axes3_zz[i]*pus_alpha_2_o_in_axes3_y -
-        pus_B_3_o_in_axes3_zx*m->pus_Sigma_3_in_axes3_xx[i] -
-        pus_B_3_o_in_axes3_zy*m->pus_J_3_in_spec3_xz[i];
-    const real pus_mu_3_o_in_axes3_z = pus_acc_3_o_in_axes3_y*m->pus_h_3_in_spec3_x[i] +
-        pus_acc_3_o_in_axes3_x*m->pus_h_3_in_spec3_z[i] - v->pus_mu_3_t_6 +
-        pus_B_3_o_in_axes3_yx*m->pus_Sigma_3_in_axes3_xx[i] -
-        pus_B_3_o_in_axes3_xy*m->pus_Sigma_3_in_axes3_yy[i] -
-        m->pus_J_3_in_spec3_xy[i]*pus_alpha_2_o_t -
-        m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
-    /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real pus_G_o_t = v->pus_w_2_in_axes3_z*(v->pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
-        v->pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
-    const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*m->pus_w_3_in_axes3_y[i];
-    /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real pus_c_o_in_axes3_x = v->pus_c_t +
-        pus_B_3_o_in_axes3_xy*m->pus_h_3_in_spec3_z[i] -
-        pus_alpha_2_o_in_axes3_y*m->pus_h_3_in_spec3_y[i] -
-        v->pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*m->pus_link1_mass[i] -
-        pus_G_o_in_axes3_y*v->pus_e_1_in_axes3_y - pus_G_o_t*v->pus_s_2);
-    const real pus_c_o_in_axes3_y = -v->pus_c_t_2 -
-        pus_B_3_o_in_axes3_yx*m->pus_h_3_in_spec3_x[i] -
-        pus_alpha_2_o_t*m->pus_h_3_in_spec3_y[i] - pus_G_o_in_axes3_y;
-    const real pus_c_o_in_axes3_z = v->pus_c_t_3 +
-        pus_B_3_o_in_axes3_zy*m->pus_h_3_in_spec3_z[i] -
-        pus_B_3_o_in_axes3_zx*m->pus_h_3_in_spec3_x[i] + pus_G_o_t;
-    /* (pus-U) velocity and gravity terms of the leg force */
-    v->pus_U_x = -v->axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
-        v->axis_z_pus_axes3_x*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_x*pus_c_o_in_axes3_x;
-    v->pus_U_y = -v->axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
-        v->axis_z_pus_axes3_y*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_y*pus_c_o_in_axes3_x;
-    v->pus_U_z = -v->axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
-        v->axis_z_pus_axes3_z*pus_c_o_in_axes3_z - v->axis_x_pus_axes3_z*pus_c_o_in_axes3_x;
-    /* (Z_a) rotational part of Z */
-    v->pus_Z_a_t = v->pus_U_z*v->pus_q_y - v->pus_U_y*v->pus_q_z;
-    v->pus_Z_a_t_2 = v->pus_U_x*v->pus_q_z - v->pus_U_z*v->pus_q_x;
-    v->pus_Z_a_t_3 = v->pus_U_y*v->pus_q_x - v->pus_U_x*v->pus_q_y;
-}
-
 INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
 {
     /* (pus-alpha_2) angular acceleration of link 2 */
@@ -1984,8 +2022,8 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
     const real pus_alpha_3_in_axes3_x = v->pus_W_3_in_axes3_yz - pus_alpha_2_t;
     const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - v->pus_W_3_in_axes3_xz;
     /* (pus-B_3) acceleration tensor of link 3 */
-    const real pus_B_3_in_axes3_xy = v->pus_W_3_in_axes3_xy + v->pus_qdd_3_t;
-    const real pus_B_3_in_axes3_yx = v->pus_W_3_in_axes3_xy - v->pus_qdd_3_t;
+    const real pus_B_3_in_axes3_xy = v->pus_W_3_in_axes3_xy - v->pus_qdd_3;
+    const real pus_B_3_in_axes3_yx = v->pus_W_3_in_axes3_xy + v->pus_qdd_3;
     const real pus_B_3_in_axes3_zx = v->pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
     const real pus_B_3_in_axes3_zy = v->pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
     /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
@@ -2069,6 +2107,64 @@ INLINE void any_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[8*count + at];
 }
 
+INLINE void any_sums_pus(size_t k, size_t count, int add, const values_pus *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->pus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->pus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->pus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->pus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->pus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->pus_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->pus_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->pus_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v->pus_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->pus_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->pus_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->pus_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->pus_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->pus_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->pus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->pus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->pus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->pus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->pus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->pus_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_pus_2(size_t k, size_t count, int add, const values_pus *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->pus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->pus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->pus_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->pus_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->pus_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->pus_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_pus(size_t k, size_t count, const values_pus *v, real *o)
+{
+    /* (pus-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->pus_w_1_x;
+    o[1*count + k] = v->pus_w_1_y;
+    o[2*count + k] = v->pus_w_1_z;
+    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->pus_H_a_1_x;
+    o[4*count + k] = v->pus_H_a_1_y;
+    o[5*count + k] = v->pus_H_a_1_z;
+}
+
+INLINE void any_singular_pus(const prepared *m, size_t i, size_t k, const values_pus *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]) +
+        UNLESS(magnitude(v->pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
+        UNLESS(magnitude(v->pus_e_1_in_axes3_x) > LEAST_1);
+}
+
 INLINE void any_place_pus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
@@ -2139,66 +2235,28 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_V_X(m, w, i, j, V, &v);
-    stage_pus_M_dynamics(m, i, &v);
     stage_pus_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.pus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.pus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.pus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.pus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.pus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.pus_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.pus_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.pus_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.pus_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.pus_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.pus_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.pus_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.pus_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.pus_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.pus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.pus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.pus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.pus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.pus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.pus_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.pus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.pus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.pus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.pus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.pus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.pus_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (pus-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.pus_w_1_x;
-    o[1*count + k] = v.pus_w_1_y;
-    o[2*count + k] = v.pus_w_1_z;
-    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.pus_H_a_1_x;
-    o[4*count + k] = v.pus_H_a_1_y;
-    o[5*count + k] = v.pus_H_a_1_z;
+    stage_pus_M_dynamics(m, i, &v);
+    any_sums_pus(k, count, add, &v, terms);
+    any_sums_pus_2(k, count, add, &v, terms + 20*count);
+    any_entries_pus(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    any_singular_pus(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
         (v.pus_H_a_1_y + v.pus_H_a_1_z));
-    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2217,7 +2275,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2236,7 +2294,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2246,7 +2304,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2319,6 +2377,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_pus[26*LEGS(LEGS_OF_pus)] CLEARED, o_pus[9*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         dynamics_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, V, terms_pus, o_pus);
     }
@@ -2335,8 +2394,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_pus[9*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_pus[9*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2344,13 +2404,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_pus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_pus(LANES, i, k, k, LANES, o_pus, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2363,46 +2426,22 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.pus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.pus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.pus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.pus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.pus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.pus_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.pus_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.pus_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.pus_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.pus_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.pus_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.pus_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.pus_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.pus_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.pus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.pus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.pus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.pus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.pus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.pus_M_aa_t_6);  /* M_aa_zz_of_legs */
+    any_sums_pus(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 1*count);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2421,7 +2460,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2494,6 +2533,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_pus[20*LEGS(LEGS_OF_pus)] CLEARED, o_pus[2*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         M_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus, o_pus);
     }
@@ -2509,21 +2549,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_pus[2*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_pus[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_pus(m, LANES, i, k, k, LANES, 1, s, X, sums, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_pus_2(k, k, LANES, o_pus, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2548,23 +2592,14 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_V_X(m, w, i, j, V, &v);
     stage_pus_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.pus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.pus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.pus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.pus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.pus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.pus_Z_a_t_3);  /* Z_a_z_of_legs */
+    any_sums_pus_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2574,7 +2609,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2601,6 +2636,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_pus[6*LEGS(LEGS_OF_pus)] CLEARED, o_pus[2*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         Z_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, V, terms_pus, o_pus);
     }
@@ -2617,8 +2653,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_pus[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_pus[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2626,13 +2663,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_pus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_pus_2(k, k, LANES, o_pus, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2644,19 +2684,12 @@ INLINE void H_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
-    /* (pus-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.pus_w_1_x;
-    o[1*count + k] = v.pus_w_1_y;
-    o[2*count + k] = v.pus_w_1_z;
-    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.pus_H_a_1_x;
-    o[4*count + k] = v.pus_H_a_1_y;
-    o[5*count + k] = v.pus_H_a_1_z;
-    o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
-        (v.pus_H_a_1_y + v.pus_H_a_1_z));
+    any_entries_pus(k, count, &v, o);
     o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
         + UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
+        (v.pus_H_a_1_y + v.pus_H_a_1_z));
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2665,6 +2698,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_pus[9*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         H_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, o_pus);
     }
@@ -2676,16 +2710,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_pus[9*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_pus[9*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_pus(m, LANES, i, k, k, LANES, s, X, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_pus(LANES, i, k, k, LANES, o_pus, H, t);
         }
@@ -2775,11 +2812,11 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_z_pus_axes3_y*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_y*v.pus_c_in_axes3_x;
     const real pus_c_z = v.axis_y_pus_axes3_z*v.pus_c_in_axes3_y +
         v.axis_z_pus_axes3_z*v.pus_c_in_axes3_z + v.axis_x_pus_axes3_z*v.pus_c_in_axes3_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real pus_R_a_t = pus_c_y*v.pus_q_z - pus_c_z*v.pus_q_y;
     const real pus_R_a_t_2 = pus_c_z*v.pus_q_x - pus_c_x*v.pus_q_z;
     const real pus_R_a_t_3 = pus_c_x*v.pus_q_y - pus_c_y*v.pus_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, pus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, pus_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, pus_c_z);  /* R_t_z_of_legs */
@@ -2787,18 +2824,9 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, pus_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, pus_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, pus_R_a_t_3);  /* R_a_z_of_legs */
-    /* (pus-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.pus_w_1_x;
-    o[1*count + k] = v.pus_w_1_y;
-    o[2*count + k] = v.pus_w_1_z;
-    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.pus_H_a_1_x;
-    o[4*count + k] = v.pus_H_a_1_y;
-    o[5*count + k] = v.pus_H_a_1_z;
+    any_entries_pus(k, count, &v, o);
     o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 7*count);
 }
 
 INLINE void required_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2816,7 +2844,7 @@ INLINE void required_place_pus(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2826,7 +2854,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2854,6 +2882,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_pus); i += BESIDE(LEGS_OF_pus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_pus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_pus); ++k) {
             required_legs_pus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_pus), 0, s, X, V, A, terms_pus,
                 o_pus);
@@ -2872,8 +2901,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_pus[8*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_pus[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -2881,13 +2911,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_pus(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_pus(LANES, i, k, k, LANES, o_pus, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2911,10 +2944,10 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = pus_q_2;
     /* (pus-q_3) */
     o[2*count + k] = pus_q_3;
-    o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
     o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) >
         TOLERANCE*TOLERANCE*m->pus_size_t_2[i]);
+    o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
 }
 
 INLINE void inverse_kinematics_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2934,6 +2967,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_pus[6*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         inverse_kinematics_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, o_pus);
     }
@@ -2945,16 +2979,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_pus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_pus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_pus(m, LANES, i, k, k, LANES, s, X, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_pus(LANES, i, k, k, LANES, o_pus, q, t);
         }
@@ -2974,11 +3011,9 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.pus_qd_2;
     /* (pus-qd_3) rate of joint 3 */
     o[2*count + k] = v.pus_qd_3;
-    o[5*count + k] = v.pus_qd_1 + (v.pus_qd_2 + v.pus_qd_3);
     o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.pus_qd_1 + (v.pus_qd_2 + v.pus_qd_3);
 }
 
 INLINE void joint_rates_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -2999,6 +3034,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_pus[6*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         joint_rates_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, V, o_pus);
     }
@@ -3010,16 +3046,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_pus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_pus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_pus(m, LANES, i, k, k, LANES, s, X, V, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_pus(LANES, i, k, k, LANES, o_pus, qd, t);
         }
@@ -3039,12 +3078,10 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, 
     /* (pus-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.pus_qdd_2_t;
     /* (pus-qdd_3) acceleration of joint 3 */
-    o[2*count + k] = -v.pus_qdd_3_t;
-    o[5*count + k] = v.pus_qdd_1 + (v.pus_qdd_2_t + v.pus_qdd_3_t);
+    o[2*count + k] = v.pus_qdd_3;
     o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.pus_qdd_1 + (v.pus_qdd_2_t + v.pus_qdd_3);
 }
 
 INLINE void joint_accelerations_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3065,6 +3102,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_pus[6*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         joint_accelerations_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), s, X, V, A, o_pus);
     }
@@ -3076,16 +3114,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_pus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_pus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_pus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_pus(m, LANES, i, k, k, LANES, s, X, V, A, o_pus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_pus(LANES, i, k, k, LANES, o_pus, qdd, t);
         }
@@ -3126,9 +3167,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[4*count + k] = v.pus_w_1_y;
     o[5*count + k] = v.pus_w_1_z;
     o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
+    any_singular_pus(m, i, k, &v, o + 7*count);
 }
 
 INLINE void legs_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3152,6 +3191,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_pus); i += BESIDE(LEGS_OF_pus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_pus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_pus); ++k) {
             legs_legs_pus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_pus), s, X, V, A, o_pus);
         }
@@ -3215,6 +3255,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_pus); i += BESIDE(LEGS_OF_pus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_pus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_pus); ++k) {
             potential_legs_pus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus,
                 o_pus);
@@ -3262,7 +3303,7 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
     const real pus_pivot_size_3 = magnitude(v.pus_e_1_in_axes3_x);
     const real pus_least_pivots = lesser(lesser(pus_pivot_size_3,
         m->inv_pus_size[i]*pus_pivot_size_2), root(m->inv_pus_size_t_2[i]*pus_pivot_size));
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real pus_spread_t = m->b_c_in_platform_x - m->pus_platform_point_x[i];
     const real pus_spread_t_2 = m->b_c_in_platform_y - m->pus_platform_point_y[i];
     const real pus_spread_t_3 = m->b_c_in_platform_z - m->pus_platform_point_z[i];
@@ -3270,23 +3311,14 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
         pus_spread_t_3*pus_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, pus_spread_t_4);  /* spread_pus */
-    /* (pus-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.pus_w_1_x;
-    o[1*count + k] = v.pus_w_1_y;
-    o[2*count + k] = v.pus_w_1_z;
-    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.pus_H_a_1_x;
-    o[4*count + k] = v.pus_H_a_1_y;
-    o[5*count + k] = v.pus_H_a_1_z;
+    any_entries_pus(k, count, &v, o);
     /* (pus-G) */
     o[6*count + k] = pus_least_pivots;
     o[7*count + k] = v.pus_J_3_t_7;
+    o[8*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    any_singular_pus(m, i, k, &v, o + 9*count);
     o[10*count + k] = ((v.pus_w_1_x + v.pus_w_1_y) + (v.pus_w_1_z + v.pus_H_a_1_x)) +
         ((v.pus_H_a_1_y + v.pus_H_a_1_z) + (pus_least_pivots + v.pus_J_3_t_7));
-    o[8*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[9*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
-        + UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
-        UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
 }
 
 INLINE void condition_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3308,7 +3340,7 @@ INLINE void condition_place_pus(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_pus = sums[0*w + k];
     const real spread_ = root(spread_pus)*m->spread_t;
     /* (spread) */
@@ -3323,6 +3355,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_pus[LEGS(LEGS_OF_pus)] CLEARED, o_pus[11*LEGS(LEGS_OF_pus)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_pus))
     for (size_t k = 0; k < LEGS(LEGS_OF_pus); ++k) {
         condition_legs_pus(m, 1, k, 0, k, LEGS(LEGS_OF_pus), 0, s, X, terms_pus, o_pus);
     }
@@ -3351,8 +3384,8 @@ int hexaglide_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3374,8 +3407,8 @@ int hexaglide_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3398,8 +3431,8 @@ int hexaglide_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3421,8 +3454,8 @@ int hexaglide_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3445,8 +3478,8 @@ int hexaglide_joint_rates(const prepared *m, const real *X, const real *V, real 
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3471,8 +3504,8 @@ int hexaglide_joint_accelerations(const prepared *m, const real *X, const real *
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3502,8 +3535,8 @@ int hexaglide_dynamics(const prepared *m, const real *X, const real *V, real *M_
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3517,6 +3550,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3716,15 +3750,16 @@ int hexaglide_inverse_dynamics(const prepared *m, const real *X, const real *V, 
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3769,10 +3804,10 @@ int hexaglide_forward_dynamics(const prepared *m, const real *X, const real *V, 
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3780,9 +3815,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

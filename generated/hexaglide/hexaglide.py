@@ -3553,7 +3553,7 @@ def _run_required(m, X, V, A):
         # (pus-qdd_2) acceleration of joint 2
         pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
-        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
+        pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
         pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
@@ -3561,8 +3561,8 @@ def _run_required(m, X, V, A):
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3) acceleration tensor of link 3
-        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t
-        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t
+        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3
+        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3
         pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y
         pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity
@@ -4182,7 +4182,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qdd_2) acceleration of joint 2
         pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
-        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
+        pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         ok = (
         ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
@@ -4193,7 +4193,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qdd_2) acceleration of joint 2
         out_qdd[_qdd_pus[1][leg]] = -pus_qdd_2_t
         # (pus-qdd_3) acceleration of joint 3
-        out_qdd[_qdd_pus[2][leg]] = -pus_qdd_3_t
+        out_qdd[_qdd_pus[2][leg]] = pus_qdd_3
     return ok, (out_qdd,)
 
 
@@ -4430,7 +4430,7 @@ def _run_legs(m, X, V, A):
         # (pus-qdd_2) acceleration of joint 2
         pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
-        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
+        pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
         pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
@@ -4438,8 +4438,8 @@ def _run_legs(m, X, V, A):
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3) acceleration tensor of link 3
-        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t
-        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t
+        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3
+        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3
         pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y
         pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6RUS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1217,6 +1250,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1233,6 +1267,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1242,6 +1277,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1268,6 +1304,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1298,6 +1335,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1624,12 +1662,12 @@ typedef struct {
         rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x,
         rus_bias_in_axes3_y, rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t,
         rus_c_t_2, rus_c_t_3, rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z,
-        rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_Q_xx, rus_Q_yy, rus_Q_t_13, rus_Q_xy, rus_Q_xz,
-        rus_Q_yz, rus_M_ta_t, rus_M_ta_t_2, rus_M_ta_t_3, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_7,
-        rus_M_ta_t_8, rus_M_ta_t_9, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4,
-        rus_M_aa_t_5, rus_M_aa_t_6, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
-        rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
-        rus_c_in_axes3_y, rus_c_in_axes3_z;
+        rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2,
+        rus_Z_a_t_3, rus_Q_xx, rus_Q_yy, rus_Q_t_13, rus_Q_xy, rus_Q_xz, rus_Q_yz, rus_M_ta_t,
+        rus_M_ta_t_2, rus_M_ta_t_3, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_7, rus_M_ta_t_8,
+        rus_M_ta_t_9, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5,
+        rus_M_aa_t_6, rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z,
+        rus_c_in_axes3_x, rus_c_in_axes3_y, rus_c_in_axes3_z;
 } values_rus;
 
 INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1859,6 +1897,107 @@ INLINE void stage_rus_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         rus_rel_in_axes3_y);
 }
 
+INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rus *v)
+{
+    /* (rus-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rus_u_1_x = omega_y*v->rus_S_dot_t_3 - omega_z*v->rus_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rus_u_1_y = omega_z*v->rus_S_dot_t - omega_x*v->rus_S_dot_t_3;
+    const real rus_u_1_z = omega_x*v->rus_S_dot_t_2 - omega_y*v->rus_S_dot_t;
+    const real rus_u_1_in_axes3_x = v->axis_x_rus_axes3_x*rus_u_1_x +
+        v->axis_x_rus_axes3_y*rus_u_1_y + v->axis_x_rus_axes3_z*rus_u_1_z;
+    const real rus_u_1_in_axes3_y = v->axis_y_rus_axes3_x*rus_u_1_x +
+        v->axis_y_rus_axes3_y*rus_u_1_y + v->axis_y_rus_axes3_z*rus_u_1_z;
+    const real rus_u_1_in_axes3_z = v->axis_z_rus_axes3_x*rus_u_1_x +
+        v->axis_z_rus_axes3_y*rus_u_1_y + v->axis_z_rus_axes3_z*rus_u_1_z;
+    /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_bias_in_axes3_x;
+    const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_bias_in_axes3_y;
+    const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_bias_in_axes3_z;
+    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rus_qdd_1_o_t = v->inv_rus_v_1_t*rus_rel_o_in_axes3_x;
+    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
+    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v->rus_v_1_t_2 -
+        rus_rel_o_in_axes3_y);
+    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real rus_alpha_2_o_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+        rus_qdd_1_o_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_o_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
+    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real rus_alpha_3_o_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - v->rus_W_3_in_axes3_xz;
+    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real rus_B_3_o_in_axes3_xy = v->rus_W_3_in_axes3_xy - rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_yx = v->rus_W_3_in_axes3_xy + rus_qdd_3_o;
+    const real rus_B_3_o_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+    const real rus_B_3_o_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+    /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_g_in_axes3_x;
+    const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_g_in_axes3_y;
+    const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_g_in_axes3_z;
+    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
+        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
+        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
+        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] - v->rus_mu_3_t_5 +
+        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
+        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
+        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
+        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
+    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
+        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
+        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
+        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
+        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
+        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
+    const real rus_mu_3_o_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+        v->rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
+    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rus_mu_1_o_in_axes1_z = -v->rus_mu_1_t_3 -
+        m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
+    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v->rus_w_2_in_axes3_z;
+    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
+    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rus_c_o_in_axes3_x = v->rus_c_t +
+        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
+        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
+        v->inv_rus_v_1_t*(rus_G_o_in_axes3_y*v->rus_v_1_t_2 + rus_N_1_o_in_axes1_z -
+        rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
+    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
+        v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
+    const real rus_c_o_in_axes3_z = v->rus_c_t_3 +
+        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
+        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
+    /* (rus-U) velocity and gravity terms of the leg force */
+    v->rus_U_x = -v->axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_x*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
+    v->rus_U_y = -v->axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_y*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
+    v->rus_U_z = -v->axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+        v->axis_z_rus_axes3_z*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
+    /* (Z_a) rotational part of Z */
+    v->rus_Z_a_t = v->rus_U_z*v->rus_q_y - v->rus_U_y*v->rus_q_z;
+    v->rus_Z_a_t_2 = v->rus_U_x*v->rus_q_z - v->rus_U_z*v->rus_q_x;
+    v->rus_Z_a_t_3 = v->rus_U_y*v->rus_q_x - v->rus_U_x*v->rus_q_y;
+}
+
 INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
 {
     /* (rus-J_3) inertia tensor of link 3 about the connection point */
@@ -1967,107 +2106,6 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     v->rus_M_aa_t_6 = v->rus_M_ta_t_2*v->rus_q_y + v->rus_M_ta_t_6*v->rus_q_x;
 }
 
-INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_rus *v)
-{
-    /* (rus-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real rus_u_1_x = omega_y*v->rus_S_dot_t_3 - omega_z*v->rus_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real rus_u_1_y = omega_z*v->rus_S_dot_t - omega_x*v->rus_S_dot_t_3;
-    const real rus_u_1_z = omega_x*v->rus_S_dot_t_2 - omega_y*v->rus_S_dot_t;
-    const real rus_u_1_in_axes3_x = v->axis_x_rus_axes3_x*rus_u_1_x +
-        v->axis_x_rus_axes3_y*rus_u_1_y + v->axis_x_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_y = v->axis_y_rus_axes3_x*rus_u_1_x +
-        v->axis_y_rus_axes3_y*rus_u_1_y + v->axis_y_rus_axes3_z*rus_u_1_z;
-    const real rus_u_1_in_axes3_z = v->axis_z_rus_axes3_x*rus_u_1_x +
-        v->axis_z_rus_axes3_y*rus_u_1_y + v->axis_z_rus_axes3_z*rus_u_1_z;
-    /* (rus-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_bias_in_axes3_x;
-    const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_bias_in_axes3_y;
-    const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_bias_in_axes3_z;
-    /* (rus-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rus_qdd_1_o_t = v->inv_rus_v_1_t*rus_rel_o_in_axes3_x;
-    /* (rus-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rus_qdd_3_o = -m->rus_w_3_in_axes3_y[i]*(rus_qdd_1_o_t*v->rus_v_1_t_2 -
-        rus_rel_o_in_axes3_y);
-    /* (rus-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real rus_alpha_2_o_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
-        rus_qdd_1_o_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
-    const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v->rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
-    /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rus_alpha_3_o_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
-    const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - v->rus_W_3_in_axes3_xz;
-    /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rus_B_3_o_in_axes3_xy = v->rus_W_3_in_axes3_xy - rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_yx = v->rus_W_3_in_axes3_xy + rus_qdd_3_o;
-    const real rus_B_3_o_in_axes3_zx = v->rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
-    const real rus_B_3_o_in_axes3_zy = v->rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
-    /* (rus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - v->rus_g_in_axes3_x;
-    const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - v->rus_g_in_axes3_y;
-    const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - v->rus_g_in_axes3_z;
-    /* (rus-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*m->rus_J_3_in_spec3_xy[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_z[i] -
-        rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] - v->rus_mu_3_t_4 +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_x +
-        rus_B_3_o_in_axes3_zx*m->rus_J_3_in_spec3_xz[i] +
-        rus_B_3_o_in_axes3_zy*m->rus_Sigma_3_in_axes3_yy[i];
-    const real rus_mu_3_o_in_axes3_y = rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        rus_acc_3_o_in_axes3_z*m->rus_h_3_in_spec3_x[i] - v->rus_mu_3_t_5 +
-        rus_B_3_o_in_axes3_xy*m->rus_J_3_in_spec3_yz[i] +
-        m->rus_Sigma_3_in_axes3_zz[i]*rus_alpha_2_o_in_axes3_y -
-        rus_B_3_o_in_axes3_zx*m->rus_Sigma_3_in_axes3_xx[i] -
-        rus_B_3_o_in_axes3_zy*m->rus_J_3_in_spec3_xz[i];
-    const real rus_mu_3_o_in_axes3_z = rus_acc_3_o_in_axes3_y*m->rus_h_3_in_spec3_x[i] +
-        rus_acc_3_o_in_axes3_x*m->rus_h_3_in_spec3_z[i] - v->rus_mu_3_t_6 +
-        rus_B_3_o_in_axes3_yx*m->rus_Sigma_3_in_axes3_xx[i] +
-        m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_o_in_axes3_x -
-        rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
-        m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
-    const real rus_mu_3_o_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v->rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
-    /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rus_mu_1_o_in_axes1_z = -v->rus_mu_1_t_3 -
-        m->rus_J_1_in_spec1_zz[i]*rus_qdd_1_o_t;
-    /* (rus-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-    /* (rus-G_o) remainder of: force at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v->rus_w_2_in_axes3_z;
-    const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*m->rus_w_3_in_axes3_y[i];
-    /* (rus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rus_c_o_in_axes3_x = v->rus_c_t +
-        rus_B_3_o_in_axes3_xy*m->rus_h_3_in_spec3_z[i] -
-        rus_alpha_2_o_in_axes3_y*m->rus_h_3_in_spec3_y[i] +
-        v->inv_rus_v_1_t*(rus_G_o_in_axes3_y*v->rus_v_1_t_2 + rus_N_1_o_in_axes1_z -
-        rus_G_o_in_axes3_z*v->rus_v_1_in_axes3_z);
-    const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*m->rus_h_3_in_spec3_y[i] -
-        v->rus_c_t_2 - rus_B_3_o_in_axes3_yx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_y;
-    const real rus_c_o_in_axes3_z = v->rus_c_t_3 +
-        rus_B_3_o_in_axes3_zy*m->rus_h_3_in_spec3_z[i] -
-        rus_B_3_o_in_axes3_zx*m->rus_h_3_in_spec3_x[i] - rus_G_o_in_axes3_z;
-    /* (rus-U) velocity and gravity terms of the leg force */
-    v->rus_U_x = -v->axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
-        v->axis_z_rus_axes3_x*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_x*rus_c_o_in_axes3_x;
-    v->rus_U_y = -v->axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
-        v->axis_z_rus_axes3_y*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_y*rus_c_o_in_axes3_x;
-    v->rus_U_z = -v->axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
-        v->axis_z_rus_axes3_z*rus_c_o_in_axes3_z - v->axis_x_rus_axes3_z*rus_c_o_in_axes3_x;
-    /* (Z_a) rotational part of Z */
-    v->rus_Z_a_t = v->rus_U_z*v->rus_q_y - v->rus_U_y*v->rus_q_z;
-    v->rus_Z_a_t_2 = v->rus_U_x*v->rus_q_z - v->rus_U_z*v->rus_q_x;
-    v->rus_Z_a_t_3 = v->rus_U_y*v->rus_q_x - v->rus_U_x*v->rus_q_y;
-}
-
 INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
 {
     /* (rus-alpha_2) angular acceleration of link 2 */
@@ -2168,6 +2206,65 @@ INLINE void any_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[8*count + at];
 }
 
+INLINE void any_sums_rus(size_t k, size_t count, int add, const values_rus *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rus_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rus_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rus_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->rus_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->rus_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->rus_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->rus_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->rus_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v->rus_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->rus_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->rus_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->rus_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->rus_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->rus_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->rus_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->rus_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->rus_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->rus_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->rus_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->rus_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rus_2(size_t k, size_t count, int add, const values_rus *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rus_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rus_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->rus_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->rus_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->rus_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->rus_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rus(size_t k, size_t count, const values_rus *v, real *o)
+{
+    /* (rus-w_1) reciprocal vector 1 */
+    o[0*count + k] = -v->rus_w_1_t_7;
+    o[1*count + k] = -v->rus_w_1_t_8;
+    o[2*count + k] = -v->rus_w_1_t_9;
+    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->rus_H_a_1_x;
+    o[4*count + k] = v->rus_H_a_1_y;
+    o[5*count + k] = v->rus_H_a_1_z;
+}
+
+INLINE void any_singular_rus(const prepared *m, size_t i, size_t k, const values_rus *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->rus_J_3_t_10) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) +
+        UNLESS(magnitude(v->rus_J_3_t_15) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v->rus_v_2_in_axes3_z) > TOLERANCE*m->rus_size[i]) +
+        UNLESS(magnitude(v->rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+}
+
 INLINE void any_place_rus_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
@@ -2238,67 +2335,28 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
     stage_rus_V_X(m, w, i, j, V, &v);
-    stage_rus_M_dynamics(m, i, &v);
     stage_rus_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rus_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.rus_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.rus_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rus_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rus_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rus_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rus_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rus-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rus_w_1_t_7;
-    o[1*count + k] = -v.rus_w_1_t_8;
-    o[2*count + k] = -v.rus_w_1_t_9;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rus_H_a_1_x;
-    o[4*count + k] = v.rus_H_a_1_y;
-    o[5*count + k] = v.rus_H_a_1_z;
+    stage_rus_M_dynamics(m, i, &v);
+    any_sums_rus(k, count, add, &v, terms);
+    any_sums_rus_2(k, count, add, &v, terms + 20*count);
+    any_entries_rus(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
-    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2317,7 +2375,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2336,7 +2394,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2346,7 +2404,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2419,6 +2477,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rus[26*LEGS(LEGS_OF_rus)] CLEARED, o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
@@ -2435,8 +2494,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_rus[9*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_rus[9*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2444,13 +2504,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2463,47 +2526,22 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
     stage_rus_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rus_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rus_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rus_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rus_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rus_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rus_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rus_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.rus_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.rus_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rus_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rus_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rus_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rus_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rus_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rus_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rus_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rus_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rus_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rus_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rus_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    any_sums_rus(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 1*count);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2522,7 +2560,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2595,6 +2633,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rus[20*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
@@ -2610,21 +2649,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_rus[2*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_rus[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2649,24 +2692,14 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rus_X(m, w, i, j, s, X, &v);
     stage_rus_V_X(m, w, i, j, V, &v);
     stage_rus_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rus_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rus_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.rus_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.rus_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.rus_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.rus_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    any_sums_rus_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2676,7 +2709,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2703,6 +2736,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, V, terms_rus, o_rus);
     }
@@ -2719,8 +2753,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rus[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rus[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2728,13 +2763,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rus_2(k, k, LANES, o_rus, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2746,21 +2784,14 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
-    /* (rus-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rus_w_1_t_7;
-    o[1*count + k] = -v.rus_w_1_t_8;
-    o[2*count + k] = -v.rus_w_1_t_9;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rus_H_a_1_x;
-    o[4*count + k] = v.rus_H_a_1_y;
-    o[5*count + k] = v.rus_H_a_1_z;
-    o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
-        (v.rus_H_a_1_y + v.rus_H_a_1_z));
+    any_entries_rus(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_1_t) >
         TOLERANCE*m->rus_size[i]);
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
+        (v.rus_H_a_1_y + v.rus_H_a_1_z));
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2769,6 +2800,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         H_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
@@ -2780,16 +2812,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_rus[9*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rus[9*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rus(m, LANES, i, k, k, LANES, s, X, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
@@ -2879,11 +2914,11 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x;
     const real rus_c_z = v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y +
         v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z + v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rus_R_a_t = rus_c_y*v.rus_q_z - rus_c_z*v.rus_q_y;
     const real rus_R_a_t_2 = rus_c_z*v.rus_q_x - rus_c_x*v.rus_q_z;
     const real rus_R_a_t_3 = rus_c_x*v.rus_q_y - rus_c_y*v.rus_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
@@ -2891,19 +2926,9 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, rus_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, rus_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rus_R_a_t_3);  /* R_a_z_of_legs */
-    /* (rus-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rus_w_1_t_7;
-    o[1*count + k] = -v.rus_w_1_t_8;
-    o[2*count + k] = -v.rus_w_1_t_9;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rus_H_a_1_x;
-    o[4*count + k] = v.rus_H_a_1_y;
-    o[5*count + k] = v.rus_H_a_1_z;
-    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
+    any_entries_rus(k, count, &v, o);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 7*count);
 }
 
 INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2921,7 +2946,7 @@ INLINE void required_place_rus(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2931,7 +2956,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2959,6 +2984,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
             required_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, s, X, V, A, terms_rus,
                 o_rus);
@@ -2977,8 +3003,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rus[8*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rus[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -2986,13 +3013,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rus(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rus(LANES, i, k, k, LANES, o_rus, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3016,11 +3046,11 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = rus_q_2;
     /* (rus-q_3) */
     o[2*count + k] = rus_q_3;
-    o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
+    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
 }
 
 INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3040,6 +3070,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         inverse_kinematics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, o_rus);
     }
@@ -3051,16 +3082,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rus(m, LANES, i, k, k, LANES, s, X, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rus(LANES, i, k, k, LANES, o_rus, q, t);
         }
@@ -3080,12 +3114,9 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.rus_qd_2;
     /* (rus-qd_3) rate of joint 3 */
     o[2*count + k] = v.rus_qd_3;
-    o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
 }
 
 INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3106,6 +3137,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_rates_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, o_rus);
     }
@@ -3117,16 +3149,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rus(m, LANES, i, k, k, LANES, s, X, V, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rus(LANES, i, k, k, LANES, o_rus, qd, t);
         }
@@ -3147,12 +3182,9 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.rus_qdd_2;
     /* (rus-qdd_3) acceleration of joint 3 */
     o[2*count + k] = -v.rus_qdd_3_t;
-    o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
-    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
 }
 
 INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3173,6 +3205,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         joint_accelerations_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
     }
@@ -3184,16 +3217,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rus[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rus[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rus(m, LANES, i, k, k, LANES, s, X, V, A, o_rus);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rus(LANES, i, k, k, LANES, o_rus, qdd, t);
         }
@@ -3233,11 +3269,8 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = -v.rus_w_1_t_7;
     o[4*count + k] = -v.rus_w_1_t_8;
     o[5*count + k] = -v.rus_w_1_t_9;
-    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 7*count);
 }
 
 INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3261,6 +3294,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
             legs_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), s, X, V, A, o_rus);
         }
@@ -3302,10 +3336,10 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         v.rus_d_Gamma_2_t_2*v.rus_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rus_potential_t_4);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
         TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
         TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
-    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3325,6 +3359,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
             potential_legs_rus(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus,
                 o_rus);
@@ -3375,7 +3410,7 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         lesser(lesser(lesser(root(m->inv_rus_rho2_1_t[i]*rus_pivot_size),
         m->inv_rus_size[i]*rus_pivot_size_3), m->inv_rus_size[i]*rus_pivot_size_4),
         root(m->inv_rus_size_t_3[i]*rus_pivot_size_2));
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rus_spread_t = m->b_c_in_platform_x - m->rus_platform_point_x[i];
     const real rus_spread_t_2 = m->b_c_in_platform_y - m->rus_platform_point_y[i];
     const real rus_spread_t_3 = m->b_c_in_platform_z - m->rus_platform_point_z[i];
@@ -3383,24 +3418,14 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         rus_spread_t_3*rus_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
-    /* (rus-w_1) reciprocal vector 1 */
-    o[0*count + k] = -v.rus_w_1_t_7;
-    o[1*count + k] = -v.rus_w_1_t_8;
-    o[2*count + k] = -v.rus_w_1_t_9;
-    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rus_H_a_1_x;
-    o[4*count + k] = v.rus_H_a_1_y;
-    o[5*count + k] = v.rus_H_a_1_z;
+    any_entries_rus(k, count, &v, o);
     /* (rus-G) */
     o[6*count + k] = rus_least_pivots;
     o[7*count + k] = v.rus_J_3_t_11;
+    o[8*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    any_singular_rus(m, i, k, &v, o + 9*count);
     o[10*count + k] = ((v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + v.rus_H_a_1_x)) +
         ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_J_3_t_11));
-    o[9*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_2_in_axes3_z) >
-        TOLERANCE*m->rus_size[i]) + UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
-    o[8*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
 }
 
 INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3422,7 +3447,7 @@ INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rus = sums[0*w + k];
     const real spread_ = root(spread_rus)*m->spread_t;
     /* (spread) */
@@ -3437,6 +3462,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[11*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         condition_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, s, X, terms_rus, o_rus);
     }
@@ -3465,8 +3491,8 @@ int hexapod_6rus_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3488,8 +3514,8 @@ int hexapod_6rus_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3512,8 +3538,8 @@ int hexapod_6rus_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3535,8 +3561,8 @@ int hexapod_6rus_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3559,8 +3585,8 @@ int hexapod_6rus_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3585,8 +3611,8 @@ int hexapod_6rus_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3616,8 +3642,8 @@ int hexapod_6rus_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3631,6 +3657,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3830,15 +3857,16 @@ int hexapod_6rus_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3883,10 +3911,10 @@ int hexapod_6rus_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3894,9 +3922,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UCU_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -164,6 +189,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -190,6 +216,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -249,19 +276,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -309,10 +339,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -364,6 +396,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1201,6 +1234,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1217,6 +1251,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1226,6 +1261,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1252,6 +1288,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1282,6 +1319,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -2490,6 +2528,67 @@ INLINE void any_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[7*count + at];
 }
 
+INLINE void any_sums_ucu(size_t k, size_t count, int add, const values_ucu *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->ucu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->ucu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->ucu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->ucu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->ucu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->ucu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->ucu_M_ta_t_10);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v->ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v->ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v->ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v->ucu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v->ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v->ucu_M_ta_t_18);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v->ucu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v->ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v->ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v->ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v->ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v->ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_ucu_2(size_t k, size_t count, int add, const values_ucu *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->ucu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->ucu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->ucu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->ucu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->ucu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->ucu_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_ucu(size_t k, size_t count, const values_ucu *v, real *o)
+{
+    /* (ucu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v->axis_z_ucu_axes4_x;
+    o[1*count + k] = v->axis_z_ucu_axes4_y;
+    o[2*count + k] = v->axis_z_ucu_axes4_z;
+    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->ucu_H_a_3_x;
+    o[4*count + k] = v->ucu_H_a_3_y;
+    o[5*count + k] = v->ucu_H_a_3_z;
+}
+
+INLINE void any_singular_ucu(size_t k, const values_ucu *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->ucu_h_4_t_7) > LEAST_1) + UNLESS(magnitude(v->ucu_h_4_t_11) >
+        LEAST_1) + UNLESS(magnitude(v->ucu_h_4_t_19) > LEAST_2) +
+        UNLESS(magnitude(v->ucu_end_p1_in_axes4_x) > LEAST_3) +
+        UNLESS(magnitude(v->ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v->ucu_v_1_in_axes2_z)
+        > LEAST_4);
+}
+
 INLINE void any_place_ucu_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -2561,66 +2660,25 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_ucu_V_X(m, w, i, j, V, &v);
     stage_ucu_M_dynamics(m, i, &v);
     stage_ucu_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.ucu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ucu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ucu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ucu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ucu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ucu_M_ta_t_18);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ucu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.ucu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.ucu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.ucu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.ucu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.ucu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.ucu_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_z_ucu_axes4_x;
-    o[1*count + k] = v.axis_z_ucu_axes4_y;
-    o[2*count + k] = v.axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ucu_H_a_3_x;
-    o[4*count + k] = v.ucu_H_a_3_y;
-    o[5*count + k] = v.ucu_H_a_3_z;
+    any_sums_ucu(k, count, add, &v, terms);
+    any_sums_ucu_2(k, count, add, &v, terms + 21*count);
+    any_entries_ucu(k, count, &v, o);
+    any_singular_ucu(k, &v, o + 6*count);
     o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
         (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -2636,7 +2694,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2655,7 +2713,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2665,7 +2723,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2741,6 +2799,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_ucu[27*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         dynamics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
@@ -2757,8 +2816,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
-    real o_ucu[8*LANES];
+    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real o_ucu[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2766,13 +2826,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2785,48 +2848,21 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.ucu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ucu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ucu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ucu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ucu_M_ta_t_10);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.ucu_M_ta_t_18);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.ucu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
+    any_sums_ucu(k, count, add, &v, terms);
+    any_singular_ucu(k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -2842,7 +2878,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2918,6 +2954,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_ucu[21*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         M_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
@@ -2933,21 +2970,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
-    real o_ucu[LANES];
+    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real o_ucu[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ucu_2(k, k, LANES, o_ucu, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2972,24 +3013,13 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ucu_X(m, w, i, j, s, X, &v);
     stage_ucu_V_X(m, w, i, j, V, &v);
     stage_ucu_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.ucu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.ucu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.ucu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.ucu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.ucu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.ucu_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
+    any_sums_ucu_2(k, count, add, &v, terms);
+    any_singular_ucu(k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2999,7 +3029,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -3026,6 +3056,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         Z_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, V, terms_ucu, o_ucu);
     }
@@ -3042,8 +3073,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_ucu[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_ucu[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -3051,13 +3083,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ucu_2(k, k, LANES, o_ucu, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -3069,19 +3104,12 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_z_ucu_axes4_x;
-    o[1*count + k] = v.axis_z_ucu_axes4_y;
-    o[2*count + k] = v.axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ucu_H_a_3_x;
-    o[4*count + k] = v.ucu_H_a_3_y;
-    o[5*count + k] = v.ucu_H_a_3_z;
-    o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
-        (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
+    any_entries_ucu(k, count, &v, o);
     o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
         UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_12) >
         LEAST_4);
+    o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
+        (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -3090,6 +3118,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         H_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
@@ -3101,16 +3130,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_ucu[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ucu[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ucu(m, LANES, i, k, k, LANES, s, X, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
         }
@@ -3201,11 +3233,11 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_z_ucu_axes4_y*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_y*v.ucu_c_in_axes4_y;
     const real ucu_c_z = v.axis_x_ucu_axes4_z*v.ucu_c_in_axes4_x -
         v.axis_z_ucu_axes4_z*v.ucu_phi_4_in_axes4_z + v.axis_y_ucu_axes4_z*v.ucu_c_in_axes4_y;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real ucu_R_a_t = ucu_c_y*v.ucu_q_z - v.ucu_c_m_x - ucu_c_z*v.ucu_q_y;
     const real ucu_R_a_t_2 = ucu_c_z*v.ucu_q_x - v.ucu_c_m_y - ucu_c_x*v.ucu_q_z;
     const real ucu_R_a_t_3 = ucu_c_x*v.ucu_q_y - v.ucu_c_m_z - ucu_c_y*v.ucu_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, ucu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ucu_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, ucu_c_z);  /* R_t_z_of_legs */
@@ -3213,19 +3245,8 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, ucu_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, ucu_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, ucu_R_a_t_3);  /* R_a_z_of_legs */
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_z_ucu_axes4_x;
-    o[1*count + k] = v.axis_z_ucu_axes4_y;
-    o[2*count + k] = v.axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ucu_H_a_3_x;
-    o[4*count + k] = v.ucu_H_a_3_y;
-    o[5*count + k] = v.ucu_H_a_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
+    any_entries_ucu(k, count, &v, o);
+    any_singular_ucu(k, &v, o + 6*count);
 }
 
 INLINE void required_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3242,7 +3263,7 @@ INLINE void required_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3252,7 +3273,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3280,6 +3301,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ucu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
             required_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), 0, s, X, V, A, terms_ucu,
                 o_ucu);
@@ -3298,8 +3320,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_ucu[7*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_ucu[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -3307,13 +3330,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_ucu(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_ucu(LANES, i, k, k, LANES, o_ucu, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3339,10 +3365,10 @@ INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, s
     o[2*count + k] = v.ucu_h_4_t_12;
     /* (ucu-q_4) */
     o[3*count + k] = ucu_q_4;
-    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_h_4_t_12 + ucu_q_4);
     o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
         UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
         LEAST_2);
+    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_h_4_t_12 + ucu_q_4);
 }
 
 INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3362,6 +3388,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         inverse_kinematics_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, o_ucu);
     }
@@ -3373,16 +3400,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ucu[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ucu[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_ucu(m, LANES, i, k, k, LANES, s, X, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_ucu(LANES, i, k, k, LANES, o_ucu, q, t);
         }
@@ -3404,12 +3434,8 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t i, size_t j
     o[2*count + k] = v.ucu_S_dot_in_axes2_x;
     /* (ucu-qd_4) rate of joint 4 */
     o[3*count + k] = v.ucu_qd_4_2;
+    any_singular_ucu(k, &v, o + 4*count);
     o[5*count + k] = (v.ucu_qd_1 + v.ucu_qd_2) + (v.ucu_S_dot_in_axes2_x + v.ucu_qd_4_2);
-    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
 }
 
 INLINE void joint_rates_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3430,6 +3456,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_rates_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, o_ucu);
     }
@@ -3441,16 +3468,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ucu[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ucu[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_ucu(m, LANES, i, k, k, LANES, s, X, V, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_ucu(LANES, i, k, k, LANES, o_ucu, qd, t);
         }
@@ -3476,12 +3506,8 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, 
     o[2*count + k] = ucu_rel_in_axes4_z;
     /* (ucu-qdd_4) acceleration of joint 4 */
     o[3*count + k] = -v.ucu_qdd_4_t;
+    any_singular_ucu(k, &v, o + 4*count);
     o[5*count + k] = (v.ucu_qdd_1 + v.ucu_qdd_2) + (ucu_rel_in_axes4_z + v.ucu_qdd_4_t);
-    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
 }
 
 INLINE void joint_accelerations_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3502,6 +3528,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         joint_accelerations_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
     }
@@ -3513,16 +3540,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ucu[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ucu[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_ucu(m, LANES, i, k, k, LANES, s, X, V, A, o_ucu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_ucu(LANES, i, k, k, LANES, o_ucu, qdd, t);
         }
@@ -3567,11 +3597,7 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_
     o[6*count + k] = v.axis_z_ucu_axes4_x;
     o[7*count + k] = v.axis_z_ucu_axes4_y;
     o[8*count + k] = v.axis_z_ucu_axes4_z;
-    o[9*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
+    any_singular_ucu(k, &v, o + 9*count);
 }
 
 INLINE void legs_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3598,6 +3624,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ucu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
             legs_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), s, X, V, A, o_ucu);
         }
@@ -3661,6 +3688,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ucu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ucu); ++k) {
             potential_legs_ucu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu,
                 o_ucu);
@@ -3713,7 +3741,7 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
         lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),
         R(1.25)*root(ucu_pivot_size_2)), root(ucu_pivot_size_3)), ucu_pivot_size_4),
         R(1.25)*ucu_pivot_size_5), R(1.25)*ucu_pivot_size_6);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real ucu_spread_t = m->b_c_in_platform_x - m->ucu_platform_point_x[i];
     const real ucu_spread_t_2 = m->b_c_in_platform_y - m->ucu_platform_point_y[i];
     const real ucu_spread_t_3 = m->b_c_in_platform_z - m->ucu_platform_point_z[i];
@@ -3721,23 +3749,12 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
         ucu_spread_t_3*ucu_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, ucu_spread_t_4);  /* spread_ucu */
-    /* (ucu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_z_ucu_axes4_x;
-    o[1*count + k] = v.axis_z_ucu_axes4_y;
-    o[2*count + k] = v.axis_z_ucu_axes4_z;
-    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ucu_H_a_3_x;
-    o[4*count + k] = v.ucu_H_a_3_y;
-    o[5*count + k] = v.ucu_H_a_3_z;
+    any_entries_ucu(k, count, &v, o);
     /* (ucu-G) */
     o[6*count + k] = ucu_least_pivots;
+    any_singular_ucu(k, &v, o + 7*count);
     o[8*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
         ((v.ucu_H_a_3_x + v.ucu_H_a_3_y) + (v.ucu_H_a_3_z + ucu_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
-        LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
-        LEAST_4);
 }
 
 INLINE void condition_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3757,7 +3774,7 @@ INLINE void condition_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_ucu = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_ucu);
     /* (spread) */
@@ -3773,6 +3790,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_ucu))
     for (size_t k = 0; k < LEGS(LEGS_OF_ucu); ++k) {
         condition_legs_ucu(m, 1, k, 0, k, LEGS(LEGS_OF_ucu), 0, s, X, terms_ucu, o_ucu);
     }
@@ -3801,8 +3819,8 @@ int hexapod_6ucu_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3824,8 +3842,8 @@ int hexapod_6ucu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3848,8 +3866,8 @@ int hexapod_6ucu_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3871,8 +3889,8 @@ int hexapod_6ucu_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3895,8 +3913,8 @@ int hexapod_6ucu_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3921,8 +3939,8 @@ int hexapod_6ucu_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3952,8 +3970,8 @@ int hexapod_6ucu_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3967,6 +3985,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -4166,15 +4185,16 @@ int hexapod_6ucu_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -4219,10 +4239,10 @@ int hexapod_6ucu_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4230,9 +4250,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

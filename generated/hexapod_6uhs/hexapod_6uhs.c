@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6UHS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -776,6 +809,13 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
             uhs_J_3_t_4);
         /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
         const real uhs_bias_t = 2*uhs_joint3_pitch;
+        /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real uhs_acc_3_t = gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
+            gravity_z*uhs_base_frame_zx;
+        const real uhs_acc_3_t_2 = gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
+            gravity_z*uhs_base_frame_zy;
+        const real uhs_acc_3_t_3 = gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
+            gravity_z*uhs_base_frame_zz;
         /* (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z;
@@ -797,13 +837,6 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_Sigma_2_in_axes2_xx = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_xx;
         const real uhs_Sigma_2_in_axes2_yy = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_zz;
         const real uhs_Sigma_2_in_axes2_zz = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_yy;
-        /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real uhs_mu_2_t = gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
-            gravity_z*uhs_base_frame_zx;
-        const real uhs_mu_2_t_2 = gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
-            gravity_z*uhs_base_frame_zy;
-        const real uhs_mu_2_t_3 = gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
-            gravity_z*uhs_base_frame_zz;
         /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         const real inv_uhs_size_t = 1/uhs_size_t;
@@ -855,6 +888,9 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         KEEP_OF_LEG(uhs_Sigma_3_in_axes3_xx);
         KEEP_OF_LEG(uhs_Sigma_3_in_axes3_yy);
         KEEP_OF_LEG(uhs_Sigma_3_in_axes3_zz);
+        KEEP_OF_LEG(uhs_acc_3_t);
+        KEEP_OF_LEG(uhs_acc_3_t_2);
+        KEEP_OF_LEG(uhs_acc_3_t_3);
         KEEP_OF_LEG(uhs_base_frame_xx);
         KEEP_OF_LEG(uhs_base_frame_xy);
         KEEP_OF_LEG(uhs_base_frame_xz);
@@ -882,9 +918,6 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         KEEP_OF_LEG(uhs_joint3_offset_x);
         KEEP_OF_LEG(uhs_link2_mass);
         KEEP_OF_LEG(uhs_link3_mass);
-        KEEP_OF_LEG(uhs_mu_2_t);
-        KEEP_OF_LEG(uhs_mu_2_t_2);
-        KEEP_OF_LEG(uhs_mu_2_t_3);
         KEEP_OF_LEG(uhs_platform_joint_offset_x);
         KEEP_OF_LEG(uhs_platform_point_x);
         KEEP_OF_LEG(uhs_platform_point_y);
@@ -1246,6 +1279,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1262,6 +1296,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1271,6 +1306,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1297,6 +1333,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1327,6 +1364,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1634,20 +1672,19 @@ typedef struct {
         inv_uhs_v_1_in_axes2_z, inv_uhs_h_3_t_9, axis_z_uhs_axes3_x, axis_z_uhs_axes3_y,
         axis_z_uhs_axes3_z, uhs_w_3_x, uhs_w_3_y, uhs_w_3_z, axis_y_uhs_axes3_x, axis_y_uhs_axes3_y,
         axis_y_uhs_axes3_z, axis_x_uhs_axes3_x, axis_x_uhs_axes3_y, axis_x_uhs_axes3_z,
-        uhs_g_in_axes3_x, uhs_g_in_axes3_y, uhs_g_in_axes3_z, uhs_g_in_axes2_z, uhs_g_in_axes2_x,
-        uhs_g_in_axes2_y, uhs_mu_2_t_11, uhs_mu_2_t_12, uhs_mu_2_t_13, uhs_H_a_3_x, uhs_H_a_3_y,
-        uhs_H_a_3_z, uhs_S_dot_t, uhs_S_dot_t_2, uhs_S_dot_t_3, uhs_qd_1, uhs_qd_2, uhs_qd_3,
-        uhs_W_2_in_axes2_yz, uhs_W_2_in_axes2_xz, uhs_W_2_in_axes2_xy, uhs_W_2_in_axes3_xy,
-        uhs_W_3_in_axes3_xz, uhs_W_3_in_axes3_yz, uhs_zeta_3_in_axes3_x, uhs_zeta_3_in_axes3_y,
-        uhs_bias_in_axes3_x, uhs_bias_in_axes3_y, uhs_bias_in_axes3_z, uhs_mu_3_t_2, uhs_mu_3_t_3,
-        uhs_mu_3_t_4, uhs_mu_2_t_8, uhs_mu_2_t_9, uhs_mu_2_t_10, uhs_c_t, uhs_c_t_2, uhs_c_t_3,
-        uhs_S_ddot_in_axes3_x, uhs_S_ddot_in_axes3_y, uhs_S_ddot_in_axes3_z, uhs_qdd_1, uhs_qdd_2,
-        uhs_qdd_3, uhs_Q_xx, uhs_Q_yy, uhs_Q_zz, uhs_Q_xy, uhs_Q_xz, uhs_Q_yz, uhs_M_ta_t,
-        uhs_M_ta_t_2, uhs_M_ta_t_3, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_7, uhs_M_ta_t_8,
-        uhs_M_ta_t_9, uhs_M_aa_t, uhs_M_aa_t_2, uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5,
-        uhs_M_aa_t_6, uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
-        uhs_acc_3_in_axes3_x, uhs_acc_3_in_axes3_y, uhs_acc_3_in_axes3_z, uhs_c_in_axes3_x,
-        uhs_c_in_axes3_y, uhs_c_in_axes3_z;
+        uhs_g_in_axes2_z, uhs_g_in_axes2_x, uhs_g_in_axes2_y, uhs_mu_2_t_7, uhs_mu_2_t_8,
+        uhs_mu_2_t_9, uhs_H_a_3_x, uhs_H_a_3_y, uhs_H_a_3_z, uhs_S_dot_t, uhs_S_dot_t_2,
+        uhs_S_dot_t_3, uhs_qd_1, uhs_qd_2, uhs_qd_3, uhs_W_2_in_axes2_yz, uhs_W_2_in_axes2_xz,
+        uhs_W_2_in_axes2_xy, uhs_W_2_in_axes3_xy, uhs_W_3_in_axes3_xz, uhs_W_3_in_axes3_yz,
+        uhs_zeta_3_in_axes3_x, uhs_zeta_3_in_axes3_y, uhs_bias_in_axes3_x, uhs_bias_in_axes3_y,
+        uhs_bias_in_axes3_z, uhs_mu_3_t_2, uhs_mu_3_t_3, uhs_mu_3_t_4, uhs_mu_2_t_4, uhs_mu_2_t_5,
+        uhs_mu_2_t_6, uhs_c_t, uhs_c_t_2, uhs_c_t_3, uhs_S_ddot_in_axes3_z, uhs_S_ddot_in_axes3_x,
+        uhs_S_ddot_in_axes3_y, uhs_qdd_1, uhs_qdd_2, uhs_qdd_3, uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t,
+        uhs_Z_a_t_2, uhs_Z_a_t_3, uhs_Q_xx, uhs_Q_yy, uhs_Q_zz, uhs_Q_xy, uhs_Q_xz, uhs_Q_yz,
+        uhs_M_ta_t, uhs_M_ta_t_2, uhs_M_ta_t_3, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_7,
+        uhs_M_ta_t_8, uhs_M_ta_t_9, uhs_M_aa_t, uhs_M_aa_t_2, uhs_M_aa_t_3, uhs_M_aa_t_4,
+        uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_acc_3_in_axes3_x, uhs_acc_3_in_axes3_y, uhs_acc_3_in_axes3_z,
+        uhs_c_in_axes3_x, uhs_c_in_axes3_y, uhs_c_in_axes3_z;
 } values_uhs;
 
 INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1739,22 +1776,18 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->axis_x_uhs_axes3_z = v->axis_y_uhs_axes3_x*v->axis_z_uhs_axes3_y -
         v->axis_y_uhs_axes3_y*v->axis_z_uhs_axes3_x;
     /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->uhs_g_in_axes3_x = v->axis_x_uhs_axes3_x*m->gravity_x +
-        v->axis_x_uhs_axes3_y*m->gravity_y + v->axis_x_uhs_axes3_z*m->gravity_z;
-    v->uhs_g_in_axes3_y = v->axis_y_uhs_axes3_x*m->gravity_x +
-        v->axis_y_uhs_axes3_y*m->gravity_y + v->axis_y_uhs_axes3_z*m->gravity_z;
-    v->uhs_g_in_axes3_z = v->axis_z_uhs_axes3_x*m->gravity_x +
-        v->axis_z_uhs_axes3_y*m->gravity_y + v->axis_z_uhs_axes3_z*m->gravity_z;
+    const real uhs_acc_3_t_4 = m->uhs_acc_3_t[i]*v->uhs_c_1 + m->uhs_acc_3_t_2[i]*v->uhs_s_1;
+    v->uhs_g_in_axes2_z = m->uhs_acc_3_t_2[i]*v->uhs_c_1 - m->uhs_acc_3_t[i]*v->uhs_s_1;
+    v->uhs_g_in_axes2_x = m->uhs_acc_3_t_3[i]*v->uhs_e_1_in_axes3_z +
+        uhs_acc_3_t_4*v->uhs_c_2;
+    v->uhs_g_in_axes2_y = uhs_acc_3_t_4*v->uhs_e_1_in_axes3_z -
+        m->uhs_acc_3_t_3[i]*v->uhs_c_2;
     /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real uhs_mu_2_t_7 = v->uhs_c_1*m->uhs_mu_2_t[i] + m->uhs_mu_2_t_2[i]*v->uhs_s_1;
-    v->uhs_g_in_axes2_z = v->uhs_c_1*m->uhs_mu_2_t_2[i] - m->uhs_mu_2_t[i]*v->uhs_s_1;
-    v->uhs_g_in_axes2_x = v->uhs_c_2*uhs_mu_2_t_7 + v->uhs_e_1_in_axes3_z*m->uhs_mu_2_t_3[i];
-    v->uhs_g_in_axes2_y = v->uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - v->uhs_c_2*m->uhs_mu_2_t_3[i];
-    v->uhs_mu_2_t_11 = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
+    v->uhs_mu_2_t_7 = v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_z[i] +
         v->uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_y[i];
-    v->uhs_mu_2_t_12 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] -
+    v->uhs_mu_2_t_8 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_y[i] -
         v->uhs_g_in_axes2_z*m->uhs_h_2_in_spec2_x[i];
-    v->uhs_mu_2_t_13 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] +
+    v->uhs_mu_2_t_9 = v->uhs_g_in_axes2_x*m->uhs_h_2_in_spec2_z[i] +
         v->uhs_g_in_axes2_y*m->uhs_h_2_in_spec2_x[i];
     /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
     v->uhs_H_a_3_x = v->uhs_q_y*v->uhs_w_3_z - v->uhs_q_z*v->uhs_w_3_y;
@@ -1841,12 +1874,12 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->uhs_mu_3_t_3 = m->uhs_J_3_in_spec3_xy[i]*(uhs_W_2_t - uhs_mu_3_t);
     v->uhs_mu_3_t_4 = m->uhs_J_3_in_spec3_yz[i]*(uhs_W_2_t - uhs_W_2_t_2);
     /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
-    const real uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
-    const real uhs_mu_2_t_6 = v->uhs_qd_2*v->uhs_qd_2;
-    v->uhs_mu_2_t_8 = m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_5 - uhs_mu_2_t_6);
-    v->uhs_mu_2_t_9 = m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_6);
-    v->uhs_mu_2_t_10 = m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t_4 - uhs_mu_2_t_5);
+    const real uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+    const real uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+    const real uhs_mu_2_t_3 = v->uhs_qd_2*v->uhs_qd_2;
+    v->uhs_mu_2_t_4 = m->uhs_J_2_in_spec2_yz[i]*(uhs_mu_2_t_2 - uhs_mu_2_t_3);
+    v->uhs_mu_2_t_5 = m->uhs_J_2_in_spec2_xy[i]*(uhs_mu_2_t - uhs_mu_2_t_3);
+    v->uhs_mu_2_t_6 = m->uhs_J_2_in_spec2_xz[i]*(uhs_mu_2_t - uhs_mu_2_t_2);
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->uhs_c_t = m->uhs_h_3_in_spec3_y[i]*(uhs_mu_3_t + uhs_W_2_t_2);
@@ -1876,12 +1909,22 @@ INLINE void stage_uhs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real t_ddot_z = A[2*w + j];
     const real uhs_S_ddot_z = t_ddot_z + B_p_zx*v->uhs_q_x + B_p_zy*v->uhs_q_y -
         W_p_t_6*v->uhs_q_z;
-    v->uhs_S_ddot_in_axes3_x = v->axis_x_uhs_axes3_x*uhs_S_ddot_x +
-        v->axis_x_uhs_axes3_y*uhs_S_ddot_y + v->axis_x_uhs_axes3_z*uhs_S_ddot_z;
-    v->uhs_S_ddot_in_axes3_y = v->axis_y_uhs_axes3_x*uhs_S_ddot_x +
-        v->axis_y_uhs_axes3_y*uhs_S_ddot_y + v->axis_y_uhs_axes3_z*uhs_S_ddot_z;
-    v->uhs_S_ddot_in_axes3_z = v->axis_z_uhs_axes3_x*uhs_S_ddot_x +
-        v->axis_z_uhs_axes3_y*uhs_S_ddot_y + v->axis_z_uhs_axes3_z*uhs_S_ddot_z;
+    const real uhs_S_ddot_t = uhs_S_ddot_x*m->uhs_base_frame_xx[i] +
+        uhs_S_ddot_y*m->uhs_base_frame_yx[i] + uhs_S_ddot_z*m->uhs_base_frame_zx[i];
+    const real uhs_S_ddot_t_2 = uhs_S_ddot_x*m->uhs_base_frame_xy[i] +
+        uhs_S_ddot_y*m->uhs_base_frame_yy[i] + uhs_S_ddot_z*m->uhs_base_frame_zy[i];
+    const real uhs_S_ddot_t_3 = uhs_S_ddot_x*m->uhs_base_frame_xz[i] +
+        uhs_S_ddot_y*m->uhs_base_frame_yz[i] + uhs_S_ddot_z*m->uhs_base_frame_zz[i];
+    const real uhs_S_ddot_t_4 = uhs_S_ddot_t*v->uhs_c_1 + uhs_S_ddot_t_2*v->uhs_s_1;
+    const real uhs_S_ddot_t_5 = uhs_S_ddot_t_2*v->uhs_c_1 - uhs_S_ddot_t*v->uhs_s_1;
+    v->uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*v->uhs_e_1_in_axes3_z +
+        uhs_S_ddot_t_4*v->uhs_c_2;
+    const real uhs_S_ddot_t_6 = uhs_S_ddot_t_4*v->uhs_e_1_in_axes3_z -
+        uhs_S_ddot_t_3*v->uhs_c_2;
+    v->uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*v->uhs_e_2_in_axes3_x -
+        uhs_S_ddot_t_6*v->uhs_h_3_t_12;
+    v->uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*v->uhs_h_3_t_12 -
+        uhs_S_ddot_t_6*v->uhs_e_2_in_axes3_x;
     /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
     const real uhs_rel_in_axes3_x = v->uhs_S_ddot_in_axes3_x - v->uhs_bias_in_axes3_x;
     const real uhs_rel_in_axes3_y = v->uhs_S_ddot_in_axes3_y - v->uhs_bias_in_axes3_y;
@@ -1894,6 +1937,142 @@ INLINE void stage_uhs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         v->uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_in_axes3_x);
     /* (uhs-qdd_3) acceleration of joint 3 */
     v->uhs_qdd_3 = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z;
+}
+
+INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_uhs *v)
+{
+    /* (uhs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real uhs_u_1_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real uhs_u_1_y = omega_z*v->uhs_S_dot_t - omega_x*v->uhs_S_dot_t_3;
+    const real uhs_u_1_z = omega_x*v->uhs_S_dot_t_2 - omega_y*v->uhs_S_dot_t;
+    const real uhs_u_1_in_axes3_x = v->axis_x_uhs_axes3_x*uhs_u_1_x +
+        v->axis_x_uhs_axes3_y*uhs_u_1_y + v->axis_x_uhs_axes3_z*uhs_u_1_z;
+    const real uhs_u_1_in_axes3_y = v->axis_y_uhs_axes3_x*uhs_u_1_x +
+        v->axis_y_uhs_axes3_y*uhs_u_1_y + v->axis_y_uhs_axes3_z*uhs_u_1_z;
+    const real uhs_u_1_in_axes3_z = v->axis_z_uhs_axes3_x*uhs_u_1_x +
+        v->axis_z_uhs_axes3_y*uhs_u_1_y + v->axis_z_uhs_axes3_z*uhs_u_1_z;
+    /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - v->uhs_bias_in_axes3_x;
+    const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_bias_in_axes3_y;
+    const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_bias_in_axes3_z;
+    /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real uhs_qdd_1_o =
+        v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
+        v->uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
+    /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
+    const real uhs_qdd_2_o = v->inv_uhs_h_3_t_9*(uhs_qdd_1_o*v->uhs_v_1_t_2 -
+        v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
+    /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real uhs_alpha_1_o_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qdd_1_o;
+    const real uhs_alpha_1_o_in_axes2_y = -v->uhs_c_2*uhs_qdd_1_o;
+    /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real uhs_alpha_2_o_in_axes2_x = v->uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
+    const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - v->uhs_W_2_in_axes2_xz;
+    /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real uhs_B_2_o_in_axes2_xy = v->uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
+    const real uhs_B_2_o_in_axes2_yx = v->uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
+    const real uhs_B_2_o_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
+    const real uhs_B_2_o_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
+    /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real uhs_alpha_3_o_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
+        v->uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v->uhs_h_3_t_12;
+    const real uhs_alpha_3_o_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
+        uhs_alpha_2_o_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*uhs_qdd_2_o;
+    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
+        uhs_alpha_2_o_in_axes2_x;
+    /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real uhs_B_3_o_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
+    const real uhs_B_3_o_in_axes3_xz = v->uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
+    const real uhs_B_3_o_in_axes3_yx = v->uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
+    const real uhs_B_3_o_in_axes3_yz = v->uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
+    const real uhs_B_3_o_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
+    const real uhs_B_3_o_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
+    /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x -
+        v->axis_x_uhs_axes3_x*m->gravity_x - v->axis_x_uhs_axes3_y*m->gravity_y -
+        v->axis_x_uhs_axes3_z*m->gravity_z;
+    const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y -
+        v->axis_y_uhs_axes3_x*m->gravity_x - v->axis_y_uhs_axes3_y*m->gravity_y -
+        v->axis_y_uhs_axes3_z*m->gravity_z;
+    const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z -
+        v->axis_z_uhs_axes3_x*m->gravity_x - v->axis_z_uhs_axes3_y*m->gravity_y -
+        v->axis_z_uhs_axes3_z*m->gravity_z;
+    /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
+        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
+        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
+    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
+        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - v->uhs_mu_3_t_3 -
+        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
+        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
+        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
+    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
+        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + v->uhs_mu_3_t_4 +
+        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
+        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
+        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
+    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real uhs_mu_2_o_in_axes2_x = v->uhs_mu_2_t_7 - v->uhs_mu_2_t_4 +
+        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
+        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
+        uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
+        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
+    const real uhs_mu_2_o_in_axes2_y = m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y
+        - v->uhs_mu_2_t_8 - v->uhs_mu_2_t_5 + uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i]
+        - uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
+    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
+        v->uhs_mu_2_t_9 - v->uhs_mu_2_t_6 - m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y
+        + uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
+    /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
+    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
+    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
+        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
+    /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real uhs_c_o_t = v->inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
+    const real uhs_c_o_t_2 =
+        v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v->uhs_e_1_in_axes3_z -
+        uhs_N_2_o_in_axes2_y*v->uhs_c_2 + uhs_c_o_t*v->uhs_v_1_t_2);
+    const real uhs_c_o_in_axes3_x = v->uhs_c_t -
+        uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
+        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_h_3_t_12 -
+        uhs_c_o_t_2*v->uhs_e_2_in_axes3_x;
+    const real uhs_c_o_in_axes3_y = v->uhs_c_t_2 -
+        uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
+        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_e_2_in_axes3_x +
+        uhs_c_o_t_2*v->uhs_h_3_t_12;
+    const real uhs_c_o_in_axes3_z = v->uhs_c_t_3 -
+        uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
+        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
+        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
+    /* (uhs-U) velocity and gravity terms of the leg force */
+    v->uhs_U_x = -v->axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
+    v->uhs_U_y = -v->axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
+    v->uhs_U_z = -v->axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
+        v->axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
+    /* (Z_a) rotational part of Z */
+    v->uhs_Z_a_t = v->uhs_U_z*v->uhs_q_y - v->uhs_U_y*v->uhs_q_z;
+    v->uhs_Z_a_t_2 = v->uhs_U_x*v->uhs_q_z - v->uhs_U_z*v->uhs_q_x;
+    v->uhs_Z_a_t_3 = v->uhs_U_y*v->uhs_q_x - v->uhs_U_x*v->uhs_q_y;
 }
 
 INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
@@ -2031,137 +2210,6 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
     v->uhs_M_aa_t_6 = v->uhs_M_ta_t_6*v->uhs_q_x - v->uhs_M_ta_t_2*v->uhs_q_y;
 }
 
-INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_uhs *v)
-{
-    /* (uhs-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real uhs_u_1_x = omega_y*v->uhs_S_dot_t_3 - omega_z*v->uhs_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real uhs_u_1_y = omega_z*v->uhs_S_dot_t - omega_x*v->uhs_S_dot_t_3;
-    const real uhs_u_1_z = omega_x*v->uhs_S_dot_t_2 - omega_y*v->uhs_S_dot_t;
-    const real uhs_u_1_in_axes3_x = v->axis_x_uhs_axes3_x*uhs_u_1_x +
-        v->axis_x_uhs_axes3_y*uhs_u_1_y + v->axis_x_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_y = v->axis_y_uhs_axes3_x*uhs_u_1_x +
-        v->axis_y_uhs_axes3_y*uhs_u_1_y + v->axis_y_uhs_axes3_z*uhs_u_1_z;
-    const real uhs_u_1_in_axes3_z = v->axis_z_uhs_axes3_x*uhs_u_1_x +
-        v->axis_z_uhs_axes3_y*uhs_u_1_y + v->axis_z_uhs_axes3_z*uhs_u_1_z;
-    /* (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - v->uhs_bias_in_axes3_x;
-    const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_bias_in_axes3_y;
-    const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_bias_in_axes3_z;
-    /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real uhs_qdd_1_o =
-        v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
-        v->uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
-    /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real uhs_qdd_2_o = v->inv_uhs_h_3_t_9*(uhs_qdd_1_o*v->uhs_v_1_t_2 -
-        v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
-    /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real uhs_alpha_1_o_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qdd_1_o;
-    const real uhs_alpha_1_o_in_axes2_y = -v->uhs_c_2*uhs_qdd_1_o;
-    /* (uhs-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real uhs_alpha_2_o_in_axes2_x = v->uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
-    const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - v->uhs_W_2_in_axes2_xz;
-    /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real uhs_B_2_o_in_axes2_xy = v->uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_yx = v->uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
-    const real uhs_B_2_o_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
-    const real uhs_B_2_o_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real uhs_alpha_3_o_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
-        v->uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v->uhs_h_3_t_12;
-    const real uhs_alpha_3_o_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_o_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*uhs_qdd_2_o;
-    const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
-        uhs_alpha_2_o_in_axes2_x;
-    /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real uhs_B_3_o_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_xz = v->uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_yx = v->uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
-    const real uhs_B_3_o_in_axes3_yz = v->uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
-    const real uhs_B_3_o_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
-    const real uhs_B_3_o_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
-    /* (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - v->uhs_g_in_axes3_x;
-    const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_g_in_axes3_y;
-    const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_g_in_axes3_z;
-    /* (uhs-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real uhs_mu_3_o_in_axes3_x = uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
-        uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
-        uhs_B_3_o_in_axes3_yx*m->uhs_J_3_in_spec3_xy[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_Sigma_3_in_axes3_yy[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_Sigma_3_in_axes3_zz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_J_3_in_spec3_yz[i];
-    const real uhs_mu_3_o_in_axes3_y = uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_x[i] -
-        uhs_acc_3_o_in_axes3_z*m->uhs_h_3_in_spec3_y[i] - v->uhs_mu_3_t_3 -
-        uhs_B_3_o_in_axes3_xy*m->uhs_J_3_in_spec3_xz[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_Sigma_3_in_axes3_zz[i] +
-        uhs_B_3_o_in_axes3_zy*m->uhs_J_3_in_spec3_yz[i] -
-        uhs_B_3_o_in_axes3_zx*m->uhs_Sigma_3_in_axes3_xx[i];
-    const real uhs_mu_3_o_in_axes3_z = uhs_acc_3_o_in_axes3_y*m->uhs_h_3_in_spec3_y[i] -
-        uhs_acc_3_o_in_axes3_x*m->uhs_h_3_in_spec3_z[i] + v->uhs_mu_3_t_4 +
-        uhs_B_3_o_in_axes3_yx*m->uhs_Sigma_3_in_axes3_xx[i] -
-        uhs_B_3_o_in_axes3_xy*m->uhs_Sigma_3_in_axes3_yy[i] +
-        uhs_B_3_o_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
-    /* (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real uhs_mu_2_o_in_axes2_x = v->uhs_mu_2_t_11 - v->uhs_mu_2_t_8 +
-        m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_x +
-        uhs_B_2_o_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
-        uhs_B_2_o_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
-        uhs_B_2_o_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
-    const real uhs_mu_2_o_in_axes2_y = m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_o_in_axes2_y
-        - v->uhs_mu_2_t_12 - v->uhs_mu_2_t_9 + uhs_B_2_o_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i]
-        - uhs_B_2_o_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
-    const real uhs_mu_2_o_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_o_in_axes2_x -
-        v->uhs_mu_2_t_13 - v->uhs_mu_2_t_10 -
-        m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_o_in_axes2_y +
-        uhs_B_2_o_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
-        uhs_B_2_o_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
-    /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
-    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
-    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
-    /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real uhs_c_o_t = v->inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
-    const real uhs_c_o_t_2 =
-        v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v->uhs_e_1_in_axes3_z -
-        uhs_N_2_o_in_axes2_y*v->uhs_c_2 + uhs_c_o_t*v->uhs_v_1_t_2);
-    const real uhs_c_o_in_axes3_x = v->uhs_c_t -
-        uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_h_3_t_12 -
-        uhs_c_o_t_2*v->uhs_e_2_in_axes3_x;
-    const real uhs_c_o_in_axes3_y = v->uhs_c_t_2 -
-        uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_e_2_in_axes3_x +
-        uhs_c_o_t_2*v->uhs_h_3_t_12;
-    const real uhs_c_o_in_axes3_z = v->uhs_c_t_3 -
-        uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
-        m->inv_uhs_joint3_pitch[i]*uhs_mu_3_o_in_axes3_z;
-    /* (uhs-U) velocity and gravity terms of the leg force */
-    v->uhs_U_x = -v->axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z -
-        v->axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y;
-    v->uhs_U_y = -v->axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z -
-        v->axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y;
-    v->uhs_U_z = -v->axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z -
-        v->axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - v->axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y;
-    /* (Z_a) rotational part of Z */
-    v->uhs_Z_a_t = v->uhs_U_z*v->uhs_q_y - v->uhs_U_y*v->uhs_q_z;
-    v->uhs_Z_a_t_2 = v->uhs_U_x*v->uhs_q_z - v->uhs_U_z*v->uhs_q_x;
-    v->uhs_Z_a_t_3 = v->uhs_U_y*v->uhs_q_x - v->uhs_U_x*v->uhs_q_y;
-}
-
 INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
 {
     /* (uhs-alpha_1) angular acceleration of link 1 */
@@ -2189,9 +2237,11 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     const real uhs_B_3_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
     const real uhs_B_3_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
     /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->uhs_acc_3_in_axes3_x = v->uhs_S_ddot_in_axes3_x - v->uhs_g_in_axes3_x;
-    v->uhs_acc_3_in_axes3_y = v->uhs_S_ddot_in_axes3_y - v->uhs_g_in_axes3_y;
-    v->uhs_acc_3_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_g_in_axes3_z;
+    v->uhs_acc_3_in_axes3_x = v->uhs_g_in_axes2_y*v->uhs_h_3_t_12 -
+        v->uhs_e_2_in_axes3_x*v->uhs_g_in_axes2_z + v->uhs_S_ddot_in_axes3_x;
+    v->uhs_acc_3_in_axes3_y = v->uhs_e_2_in_axes3_x*v->uhs_g_in_axes2_y +
+        v->uhs_g_in_axes2_z*v->uhs_h_3_t_12 + v->uhs_S_ddot_in_axes3_y;
+    v->uhs_acc_3_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_g_in_axes2_x;
     /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real uhs_mu_3_in_axes3_x = v->uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
         v->uhs_acc_3_in_axes3_y*m->uhs_h_3_in_spec3_x[i] + v->uhs_mu_3_t_2 +
@@ -2212,18 +2262,18 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
         uhs_B_3_in_axes3_xz*m->uhs_J_3_in_spec3_xz[i] -
         uhs_B_3_in_axes3_yz*m->uhs_J_3_in_spec3_xy[i];
     /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real uhs_mu_2_in_axes2_x = v->uhs_mu_2_t_11 - v->uhs_mu_2_t_8 +
+    const real uhs_mu_2_in_axes2_x = v->uhs_mu_2_t_7 - v->uhs_mu_2_t_4 +
         m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_x +
         uhs_B_2_in_axes2_yx*m->uhs_J_2_in_spec2_xy[i] +
         uhs_B_2_in_axes2_zx*m->uhs_J_2_in_spec2_xz[i] +
         uhs_B_2_in_axes2_zy*m->uhs_Sigma_2_in_axes2_yy[i];
     const real uhs_mu_2_in_axes2_y = m->uhs_Sigma_2_in_axes2_zz[i]*uhs_alpha_1_in_axes2_y -
-        v->uhs_mu_2_t_12 - v->uhs_mu_2_t_9 + uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
+        v->uhs_mu_2_t_8 - v->uhs_mu_2_t_5 + uhs_B_2_in_axes2_xy*m->uhs_J_2_in_spec2_yz[i] -
         uhs_B_2_in_axes2_zx*m->uhs_Sigma_2_in_axes2_xx[i] -
         uhs_B_2_in_axes2_zy*m->uhs_J_2_in_spec2_xz[i];
     const real uhs_mu_2_in_axes2_z = m->uhs_J_2_in_spec2_xy[i]*uhs_alpha_1_in_axes2_x -
-        v->uhs_mu_2_t_13 - v->uhs_mu_2_t_10 - m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y
-        + uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
+        v->uhs_mu_2_t_9 - v->uhs_mu_2_t_6 - m->uhs_J_2_in_spec2_yz[i]*uhs_alpha_1_in_axes2_y +
+        uhs_B_2_in_axes2_yx*m->uhs_Sigma_2_in_axes2_xx[i] -
         uhs_B_2_in_axes2_xy*m->uhs_Sigma_2_in_axes2_yy[i];
     /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
@@ -2284,6 +2334,65 @@ INLINE void any_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
     H[(5*NU + i)*w + k] = o[5*count + at];
     t->singular[k] += o[6*count + at];
     t->total[k] += o[7*count + at];
+}
+
+INLINE void any_sums_uhs(size_t k, size_t count, int add, const values_uhs *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->uhs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->uhs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->uhs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->uhs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->uhs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->uhs_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->uhs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->uhs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v->uhs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->uhs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->uhs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->uhs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_uhs_2(size_t k, size_t count, int add, const values_uhs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->uhs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->uhs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->uhs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->uhs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->uhs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->uhs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_uhs(size_t k, size_t count, const values_uhs *v, real *o)
+{
+    /* (uhs-w_3) reciprocal vector 3 */
+    o[0*count + k] = v->uhs_w_3_x;
+    o[1*count + k] = v->uhs_w_3_y;
+    o[2*count + k] = v->uhs_w_3_z;
+    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->uhs_H_a_3_x;
+    o[4*count + k] = v->uhs_H_a_3_y;
+    o[5*count + k] = v->uhs_H_a_3_z;
+}
+
+INLINE void any_singular_uhs(const prepared *m, size_t i, size_t k, const values_uhs *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v->uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v->uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
+        UNLESS(magnitude(v->uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void any_place_uhs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2355,66 +2464,27 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
-    stage_uhs_M_dynamics(m, i, &v);
     stage_uhs_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.uhs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.uhs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.uhs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.uhs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.uhs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.uhs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (uhs-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.uhs_w_3_x;
-    o[1*count + k] = v.uhs_w_3_y;
-    o[2*count + k] = v.uhs_w_3_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.uhs_H_a_3_x;
-    o[4*count + k] = v.uhs_H_a_3_y;
-    o[5*count + k] = v.uhs_H_a_3_z;
+    stage_uhs_M_dynamics(m, i, &v);
+    any_sums_uhs(k, count, add, &v, terms);
+    any_sums_uhs_2(k, count, add, &v, terms + 20*count);
+    any_entries_uhs(k, count, &v, o);
+    any_singular_uhs(m, i, k, &v, o + 6*count);
     o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
         (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2433,7 +2503,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2452,7 +2522,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2462,7 +2532,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2535,6 +2605,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_uhs[26*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[8*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         dynamics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
@@ -2551,8 +2622,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_uhs[8*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_uhs[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2560,13 +2632,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2579,46 +2654,21 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.uhs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.uhs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.uhs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.uhs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.uhs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.uhs_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.uhs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.uhs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.uhs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.uhs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.uhs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.uhs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.uhs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.uhs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.uhs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.uhs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.uhs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.uhs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.uhs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.uhs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    any_sums_uhs(k, count, add, &v, terms);
+    any_singular_uhs(m, i, k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2637,7 +2687,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2710,6 +2760,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_uhs[20*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         M_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
@@ -2725,21 +2776,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_uhs[LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_uhs[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_uhs_2(k, k, LANES, o_uhs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2764,23 +2819,13 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_uhs_X(m, w, i, j, s, X, &v);
     stage_uhs_V_X(m, w, i, j, V, &v);
     stage_uhs_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.uhs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.uhs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.uhs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.uhs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.uhs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.uhs_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    any_sums_uhs_2(k, count, add, &v, terms);
+    any_singular_uhs(m, i, k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2790,7 +2835,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2817,6 +2862,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_uhs[6*LEGS(LEGS_OF_uhs)] CLEARED, o_uhs[LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         Z_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, V, terms_uhs, o_uhs);
     }
@@ -2833,8 +2879,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_uhs[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_uhs[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2842,13 +2889,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_uhs_2(k, k, LANES, o_uhs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2860,19 +2910,12 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
-    /* (uhs-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.uhs_w_3_x;
-    o[1*count + k] = v.uhs_w_3_y;
-    o[2*count + k] = v.uhs_w_3_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.uhs_H_a_3_x;
-    o[4*count + k] = v.uhs_H_a_3_y;
-    o[5*count + k] = v.uhs_H_a_3_z;
-    o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
-        (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
+    any_entries_uhs(k, count, &v, o);
     o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]);
+    o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
+        (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2881,6 +2924,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_uhs[8*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         H_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
@@ -2892,16 +2936,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_uhs[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_uhs[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_uhs(m, LANES, i, k, k, LANES, s, X, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
         }
@@ -2985,17 +3032,25 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_uhs_legs_required(m, i, &v);
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real uhs_c_x = v.axis_z_uhs_axes3_x*v.uhs_c_in_axes3_z +
-        v.axis_x_uhs_axes3_x*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_x*v.uhs_c_in_axes3_y;
-    const real uhs_c_y = v.axis_z_uhs_axes3_y*v.uhs_c_in_axes3_z +
-        v.axis_x_uhs_axes3_y*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_y*v.uhs_c_in_axes3_y;
-    const real uhs_c_z = v.axis_z_uhs_axes3_z*v.uhs_c_in_axes3_z +
-        v.axis_x_uhs_axes3_z*v.uhs_c_in_axes3_x + v.axis_y_uhs_axes3_z*v.uhs_c_in_axes3_y;
-    /* (R_a) moment that actuators and external wrench must give */
+    const real uhs_c_t_6 = v.uhs_c_in_axes3_x*v.uhs_e_2_in_axes3_x -
+        v.uhs_c_in_axes3_y*v.uhs_h_3_t_12;
+    const real uhs_c_t_7 = v.uhs_c_in_axes3_x*v.uhs_h_3_t_12 +
+        v.uhs_c_in_axes3_y*v.uhs_e_2_in_axes3_x;
+    const real uhs_c_t_8 = v.uhs_c_2*v.uhs_c_in_axes3_z - uhs_c_t_7*v.uhs_e_1_in_axes3_z;
+    const real uhs_c_t_9 = -v.uhs_c_in_axes3_z*v.uhs_e_1_in_axes3_z - v.uhs_c_2*uhs_c_t_7;
+    const real uhs_c_t_10 = v.uhs_c_1*uhs_c_t_8 - uhs_c_t_6*v.uhs_s_1;
+    const real uhs_c_t_11 = v.uhs_c_1*uhs_c_t_6 + uhs_c_t_8*v.uhs_s_1;
+    const real uhs_c_x = m->uhs_base_frame_xx[i]*uhs_c_t_10 -
+        m->uhs_base_frame_xz[i]*uhs_c_t_9 + m->uhs_base_frame_xy[i]*uhs_c_t_11;
+    const real uhs_c_y = m->uhs_base_frame_yx[i]*uhs_c_t_10 -
+        m->uhs_base_frame_yz[i]*uhs_c_t_9 + m->uhs_base_frame_yy[i]*uhs_c_t_11;
+    const real uhs_c_z = m->uhs_base_frame_zx[i]*uhs_c_t_10 -
+        m->uhs_base_frame_zz[i]*uhs_c_t_9 + m->uhs_base_frame_zy[i]*uhs_c_t_11;
+    /* (R_a) */
     const real uhs_R_a_t = uhs_c_y*v.uhs_q_z - uhs_c_z*v.uhs_q_y;
     const real uhs_R_a_t_2 = uhs_c_z*v.uhs_q_x - uhs_c_x*v.uhs_q_z;
     const real uhs_R_a_t_3 = uhs_c_x*v.uhs_q_y - uhs_c_y*v.uhs_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, uhs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, uhs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, uhs_c_z);  /* R_t_z_of_legs */
@@ -3003,18 +3058,8 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, uhs_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, uhs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, uhs_R_a_t_3);  /* R_a_z_of_legs */
-    /* (uhs-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.uhs_w_3_x;
-    o[1*count + k] = v.uhs_w_3_y;
-    o[2*count + k] = v.uhs_w_3_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.uhs_H_a_3_x;
-    o[4*count + k] = v.uhs_H_a_3_y;
-    o[5*count + k] = v.uhs_H_a_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    any_entries_uhs(k, count, &v, o);
+    any_singular_uhs(m, i, k, &v, o + 6*count);
 }
 
 INLINE void required_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3031,7 +3076,7 @@ INLINE void required_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3041,7 +3086,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3069,6 +3114,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_uhs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
             required_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), 0, s, X, V, A, terms_uhs,
                 o_uhs);
@@ -3087,8 +3133,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_uhs[7*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_uhs[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -3096,13 +3143,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_uhs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_uhs(LANES, i, k, k, LANES, o_uhs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3124,9 +3174,9 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = uhs_q_2;
     /* (uhs-q_3) displacement of joint 3 */
     o[2*count + k] = -v.uhs_h_3_t_11;
-    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_h_3_t_11);
     o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
         UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
+    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_h_3_t_11);
 }
 
 INLINE void inverse_kinematics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3145,6 +3195,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         inverse_kinematics_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, o_uhs);
     }
@@ -3156,16 +3207,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_uhs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_uhs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_uhs(m, LANES, i, k, k, LANES, s, X, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_uhs(LANES, i, k, k, LANES, o_uhs, q, t);
         }
@@ -3185,11 +3239,8 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.uhs_qd_2;
     /* (uhs-qd_3) rate of joint 3 */
     o[2*count + k] = v.uhs_qd_3;
+    any_singular_uhs(m, i, k, &v, o + 3*count);
     o[4*count + k] = v.uhs_qd_1 + (v.uhs_qd_2 + v.uhs_qd_3);
-    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void joint_rates_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3209,6 +3260,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_rates_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, o_uhs);
     }
@@ -3220,16 +3272,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_uhs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_uhs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_uhs(m, LANES, i, k, k, LANES, s, X, V, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_uhs(LANES, i, k, k, LANES, o_uhs, qd, t);
         }
@@ -3250,11 +3305,8 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.uhs_qdd_2;
     /* (uhs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.uhs_qdd_3;
+    any_singular_uhs(m, i, k, &v, o + 3*count);
     o[4*count + k] = v.uhs_qdd_1 + (v.uhs_qdd_2 + v.uhs_qdd_3);
-    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void joint_accelerations_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3274,6 +3326,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_uhs[5*LEGS(LEGS_OF_uhs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         joint_accelerations_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
     }
@@ -3285,16 +3338,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_uhs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_uhs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_uhs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_uhs(m, LANES, i, k, k, LANES, s, X, V, A, o_uhs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_uhs(LANES, i, k, k, LANES, o_uhs, qdd, t);
         }
@@ -3317,15 +3373,22 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
         v.uhs_acc_3_in_axes3_y*m->uhs_link3_mass[i];
     const real uhs_c_true_in_axes3_z = v.uhs_c_in_axes3_z -
         v.uhs_acc_3_in_axes3_z*m->uhs_link3_mass[i];
-    const real uhs_c_true_x = v.axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z +
-        v.axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y;
-    const real uhs_c_true_y = v.axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z +
-        v.axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y;
-    const real uhs_c_true_z = v.axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z +
-        v.axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x +
-        v.axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y;
+    const real uhs_c_true_t = uhs_c_true_in_axes3_x*v.uhs_e_2_in_axes3_x -
+        uhs_c_true_in_axes3_y*v.uhs_h_3_t_12;
+    const real uhs_c_true_t_2 = uhs_c_true_in_axes3_x*v.uhs_h_3_t_12 +
+        uhs_c_true_in_axes3_y*v.uhs_e_2_in_axes3_x;
+    const real uhs_c_true_t_3 = v.uhs_c_2*uhs_c_true_in_axes3_z -
+        uhs_c_true_t_2*v.uhs_e_1_in_axes3_z;
+    const real uhs_c_true_t_4 = -uhs_c_true_in_axes3_z*v.uhs_e_1_in_axes3_z -
+        v.uhs_c_2*uhs_c_true_t_2;
+    const real uhs_c_true_t_5 = v.uhs_c_1*uhs_c_true_t_3 - uhs_c_true_t*v.uhs_s_1;
+    const real uhs_c_true_t_6 = v.uhs_c_1*uhs_c_true_t + uhs_c_true_t_3*v.uhs_s_1;
+    const real uhs_c_true_x = m->uhs_base_frame_xx[i]*uhs_c_true_t_5 -
+        m->uhs_base_frame_xz[i]*uhs_c_true_t_4 + m->uhs_base_frame_xy[i]*uhs_c_true_t_6;
+    const real uhs_c_true_y = m->uhs_base_frame_yx[i]*uhs_c_true_t_5 -
+        m->uhs_base_frame_yz[i]*uhs_c_true_t_4 + m->uhs_base_frame_yy[i]*uhs_c_true_t_6;
+    const real uhs_c_true_z = m->uhs_base_frame_zx[i]*uhs_c_true_t_5 -
+        m->uhs_base_frame_zz[i]*uhs_c_true_t_4 + m->uhs_base_frame_zy[i]*uhs_c_true_t_6;
     /* (uhs-c_true) */
     o[0*count + k] = uhs_c_true_x;
     o[1*count + k] = uhs_c_true_y;
@@ -3334,10 +3397,7 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = v.uhs_w_3_x;
     o[4*count + k] = v.uhs_w_3_y;
     o[5*count + k] = v.uhs_w_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
+    any_singular_uhs(m, i, k, &v, o + 6*count);
 }
 
 INLINE void legs_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3360,6 +3420,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_uhs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
             legs_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), s, X, V, A, o_uhs);
         }
@@ -3424,6 +3485,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_uhs); i += BESIDE(LEGS_OF_uhs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_uhs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_uhs); ++k) {
             potential_legs_uhs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs,
                 o_uhs);
@@ -3473,7 +3535,7 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
     const real uhs_least_pivots = lesser(lesser(lesser(m->inv_uhs_size[i]*uhs_pivot_size_3,
         m->inv_uhs_size[i]*uhs_pivot_size_4), root(m->inv_uhs_size_t[i]*uhs_pivot_size)),
         root(m->inv_uhs_size_t[i]*uhs_pivot_size_2));
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real uhs_spread_t = m->b_c_in_platform_x - m->uhs_platform_point_x[i];
     const real uhs_spread_t_2 = m->b_c_in_platform_y - m->uhs_platform_point_y[i];
     const real uhs_spread_t_3 = m->b_c_in_platform_z - m->uhs_platform_point_z[i];
@@ -3481,22 +3543,12 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
         uhs_spread_t_3*uhs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, uhs_spread_t_4);  /* spread_uhs */
-    /* (uhs-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.uhs_w_3_x;
-    o[1*count + k] = v.uhs_w_3_y;
-    o[2*count + k] = v.uhs_w_3_z;
-    /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.uhs_H_a_3_x;
-    o[4*count + k] = v.uhs_H_a_3_y;
-    o[5*count + k] = v.uhs_H_a_3_z;
+    any_entries_uhs(k, count, &v, o);
     /* (uhs-G) */
     o[6*count + k] = uhs_least_pivots;
+    any_singular_uhs(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + ((v.uhs_H_a_3_x +
         v.uhs_H_a_3_y) + (v.uhs_H_a_3_z + uhs_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
-        UNLESS(magnitude(v.uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
 INLINE void condition_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3516,7 +3568,7 @@ INLINE void condition_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_uhs = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_uhs);
     /* (spread) */
@@ -3532,6 +3584,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_uhs))
     for (size_t k = 0; k < LEGS(LEGS_OF_uhs); ++k) {
         condition_legs_uhs(m, 1, k, 0, k, LEGS(LEGS_OF_uhs), 0, s, X, terms_uhs, o_uhs);
     }
@@ -3560,8 +3613,8 @@ int hexapod_6uhs_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3583,8 +3636,8 @@ int hexapod_6uhs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3607,8 +3660,8 @@ int hexapod_6uhs_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3630,8 +3683,8 @@ int hexapod_6uhs_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3654,8 +3707,8 @@ int hexapod_6uhs_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3680,8 +3733,8 @@ int hexapod_6uhs_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3711,8 +3764,8 @@ int hexapod_6uhs_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3726,6 +3779,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3925,15 +3979,16 @@ int hexapod_6uhs_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3978,10 +4033,10 @@ int hexapod_6uhs_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3989,9 +4044,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

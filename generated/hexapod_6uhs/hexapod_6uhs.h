@@ -112,14 +112,14 @@ typedef struct {
             uhs_J_3_in_spec3_yz[8], uhs_J_3_in_spec3_zz[8], uhs_Jc_2_in_axes2_xx[8],
             uhs_Sigma_2_in_axes2_xx[8], uhs_Sigma_2_in_axes2_yy[8], uhs_Sigma_2_in_axes2_zz[8],
             uhs_Sigma_3_in_axes3_xx[8], uhs_Sigma_3_in_axes3_yy[8], uhs_Sigma_3_in_axes3_zz[8],
-            uhs_base_frame_xx[8], uhs_base_frame_xy[8], uhs_base_frame_xz[8], uhs_base_frame_yx[8],
-            uhs_base_frame_yy[8], uhs_base_frame_yz[8], uhs_base_frame_zx[8], uhs_base_frame_zy[8],
-            uhs_base_frame_zz[8], uhs_base_point_x[8], uhs_base_point_y[8], uhs_base_point_z[8],
-            uhs_bias_t[8], uhs_branch_1[8], uhs_branch_2[8], uhs_d_G_in_axes3_zz[8],
-            uhs_d_phi_3_in_axes3_yz[8], uhs_d_phi_3_t[8], uhs_h_2_in_spec2_x[8],
-            uhs_h_2_in_spec2_y[8], uhs_h_2_in_spec2_z[8], uhs_h_3_in_spec3_x[8],
-            uhs_h_3_in_spec3_y[8], uhs_h_3_in_spec3_z[8], uhs_joint3_offset_x[8], uhs_link2_mass[8],
-            uhs_link3_mass[8], uhs_mu_2_t[8], uhs_mu_2_t_2[8], uhs_mu_2_t_3[8],
+            uhs_acc_3_t[8], uhs_acc_3_t_2[8], uhs_acc_3_t_3[8], uhs_base_frame_xx[8],
+            uhs_base_frame_xy[8], uhs_base_frame_xz[8], uhs_base_frame_yx[8], uhs_base_frame_yy[8],
+            uhs_base_frame_yz[8], uhs_base_frame_zx[8], uhs_base_frame_zy[8], uhs_base_frame_zz[8],
+            uhs_base_point_x[8], uhs_base_point_y[8], uhs_base_point_z[8], uhs_bias_t[8],
+            uhs_branch_1[8], uhs_branch_2[8], uhs_d_G_in_axes3_zz[8], uhs_d_phi_3_in_axes3_yz[8],
+            uhs_d_phi_3_t[8], uhs_h_2_in_spec2_x[8], uhs_h_2_in_spec2_y[8], uhs_h_2_in_spec2_z[8],
+            uhs_h_3_in_spec3_x[8], uhs_h_3_in_spec3_y[8], uhs_h_3_in_spec3_z[8],
+            uhs_joint3_offset_x[8], uhs_link2_mass[8], uhs_link3_mass[8],
             uhs_platform_joint_offset_x[8], uhs_platform_point_x[8], uhs_platform_point_y[8],
             uhs_platform_point_z[8], uhs_potential_t[8], uhs_potential_t_2[8], uhs_potential_t_3[8],
             uhs_size[8], uhs_size_t[8];
@@ -178,7 +178,7 @@ int hexapod_6uhs_joint_rates(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_joint_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of all joints. 858 mul, 537 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 792 mul, 507 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6uhs_joint_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);
@@ -194,7 +194,7 @@ size_t hexapod_6uhs_dynamics_batch(const hexapod_6uhs_model *model, size_t n, co
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z,
     hexapod_6uhs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1650 mul, 1263 add, 24 div, 12 sqrt, 12
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1644 mul, 1245 add, 24 div, 12 sqrt, 12
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6uhs_inverse_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -225,7 +225,7 @@ size_t hexapod_6uhs_complete_acceleration_batch(const hexapod_6uhs_model *model,
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1518 mul, 1143 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
+   forces of inverse_dynamics. 1512 mul, 1125 add, 24 div, 12 sqrt, 12 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexapod_6uhs_leg_reactions(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const hexapod_6uhs_real *wrench,
@@ -319,7 +319,7 @@ int hexapod_6uhs_actuator_rates(const hexapod_6uhs_model *model, const hexapod_6
 size_t hexapod_6uhs_actuator_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 858 mul, 537 add, 24 div, 12 sqrt,
+/* Accelerations of the actuated joints, in the order of tau. 792 mul, 507 add, 24 div, 12 sqrt,
    12 trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexapod_6uhs_actuator_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real
     *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);

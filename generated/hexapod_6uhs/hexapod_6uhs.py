@@ -633,6 +633,16 @@ def _prepare(p):
     uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4)
     # (uhs-bias) acceleration of the connection point at zero joint accelerations
     uhs_bias_t = 2.0*uhs_joint3_pitch
+    # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+    uhs_acc_3_t = (
+    gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
+    )
+    uhs_acc_3_t_2 = (
+    gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy + gravity_z*uhs_base_frame_zy
+    )
+    uhs_acc_3_t_3 = (
+    gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz + gravity_z*uhs_base_frame_zz
+    )
     # (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z
     uhs_d_phi_3_in_axes3_yz = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y
@@ -650,16 +660,6 @@ def _prepare(p):
     uhs_Sigma_2_in_axes2_xx = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_xx
     uhs_Sigma_2_in_axes2_yy = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_zz
     uhs_Sigma_2_in_axes2_zz = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_yy
-    # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-    uhs_mu_2_t = (
-    gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
-    )
-    uhs_mu_2_t_2 = (
-    gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy + gravity_z*uhs_base_frame_zy
-    )
-    uhs_mu_2_t_3 = (
-    gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz + gravity_z*uhs_base_frame_zz
-    )
     # (uhs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
     inv_uhs_size_t = 1.0/uhs_size_t
     inv_uhs_size = 1.0/uhs_size
@@ -749,14 +749,14 @@ def _prepare(p):
                     uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz, uhs_Jc_2_in_axes2_xx,
                     uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
                     uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz,
-                    uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t, uhs_h_2_in_spec2_x,
-                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
-                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
-                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+                    uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz, uhs_d_phi_3_in_axes3_yz,
+                    uhs_d_phi_3_t, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z,
+                    uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
                     uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
@@ -792,14 +792,15 @@ def _prepare(p):
                     uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
                     uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
                     uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
-                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
-                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
-                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
+                    uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+                    uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+                    uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y,
+                    uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+                    uhs_size_t,),
                 ),
             ),
         ),
@@ -826,14 +827,15 @@ def _prepare(p):
                     uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
                     uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
                     uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
-                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
-                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
-                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
+                    uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+                    uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+                    uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y,
+                    uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+                    uhs_size_t,),
                 ),
             ),
         ),
@@ -877,22 +879,22 @@ def _prepare(p):
             ),
         ),
         "legs": (
-        (gravity_x, gravity_y, gravity_z,),
+        (),
             (
                 (_uhs,
         (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
                     uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
                     uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
                     uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
-                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
-                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link3_mass,
-                    uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x,
-                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
-                    uhs_size_t,),
+                    uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+                    uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+                    uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y,
+                    uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link3_mass,
+                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+                    uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -901,13 +903,13 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
-                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
-                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link2_mass,
-                    uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x,
+        (inv_uhs_joint3_pitch, uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
+                    uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z,
+                    uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+                    uhs_joint3_offset_x, uhs_link2_mass, uhs_platform_joint_offset_x,
                     uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
                     uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3, uhs_size_t,),
                 ),
@@ -2018,13 +2020,13 @@ def _run_dynamics(m, X, V):
             uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yy, uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz,
             uhs_Jc_2_in_axes2_xx, uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy,
             uhs_Sigma_2_in_axes2_zz, uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy,
-            uhs_Sigma_3_in_axes3_zz, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-            uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz,
-            uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
-            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
-            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_Sigma_3_in_axes3_zz, uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1,
+            uhs_branch_2, uhs_d_G_in_axes3_zz, uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t,
+            uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+            uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
@@ -2258,19 +2260,23 @@ def _run_dynamics(m, X, V):
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_g_in_axes3_x = (
-        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_g_in_axes3_y = (
-        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
-        )
-        uhs_g_in_axes3_z = (
-        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
-        )
+        uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
+        uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
         # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_g_in_axes3_x
-        uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_g_in_axes3_y
-        uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_g_in_axes3_z
+        uhs_acc_3_o_in_axes3_x = (
+        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_o_in_axes3_y = (
+        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_o_in_axes3_z = (
+        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
+        )
         # (uhs-D_1_3) inertia of joint 3 along joint 1
         uhs_D_1_3 = (
         uhs_J_3_in_spec3_xx*uhs_e_1_in_axes3_z + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
@@ -2318,35 +2324,31 @@ def _run_dynamics(m, X, V):
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
-        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
-        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
-        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
-        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
-        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_4 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_2 - uhs_mu_2_t_3)
+        uhs_mu_2_t_5 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t - uhs_mu_2_t_3)
+        uhs_mu_2_t_6 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t - uhs_mu_2_t_2)
+        uhs_mu_2_t_7 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_8 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_9 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_in_axes2_x = (
-        uhs_mu_2_t_11 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+        uhs_mu_2_t_7 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
             uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_8
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_4
         )
         uhs_mu_2_o_in_axes2_y = (
         uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_12 - uhs_mu_2_t_9 -
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_5 - uhs_mu_2_t_8 -
             uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
             uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_o_in_axes2_z = (
         uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
-            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_10 - uhs_mu_2_t_13 -
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_6 - uhs_mu_2_t_9 -
             uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
             uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y
         )
@@ -3153,12 +3155,12 @@ def _run_Z(m, X, V):
             uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
             uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
             uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
-            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
-            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
-            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+            uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
@@ -3375,19 +3377,23 @@ def _run_Z(m, X, V):
         uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
         uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_g_in_axes3_x = (
-        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_g_in_axes3_y = (
-        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
-        )
-        uhs_g_in_axes3_z = (
-        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
-        )
+        uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
+        uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
         # (uhs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_g_in_axes3_x
-        uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_g_in_axes3_y
-        uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_g_in_axes3_z
+        uhs_acc_3_o_in_axes3_x = (
+        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_o_in_axes3_y = (
+        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_o_in_axes3_z = (
+        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
+        )
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
@@ -3416,35 +3422,31 @@ def _run_Z(m, X, V):
             uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
-        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
-        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
-        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
-        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
-        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_4 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_2 - uhs_mu_2_t_3)
+        uhs_mu_2_t_5 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t - uhs_mu_2_t_3)
+        uhs_mu_2_t_6 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t - uhs_mu_2_t_2)
+        uhs_mu_2_t_7 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_8 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_9 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         # (uhs-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their reference points
         uhs_mu_2_o_in_axes2_x = (
-        uhs_mu_2_t_11 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+        uhs_mu_2_t_7 + uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
             uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_8
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_4
         )
         uhs_mu_2_o_in_axes2_y = (
         uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
-            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_12 - uhs_mu_2_t_9 -
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y - uhs_mu_2_t_5 - uhs_mu_2_t_8 -
             uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
             uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_o_in_axes2_z = (
         uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
-            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_10 - uhs_mu_2_t_13 -
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x - uhs_mu_2_t_6 - uhs_mu_2_t_9 -
             uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
             uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y
         )
@@ -3634,7 +3636,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1650 mul, 1263 add, 24 div, 12 sqrt, 12 trig
+# required: 1644 mul, 1245 add, 24 div, 12 sqrt, 12 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3782,12 +3784,12 @@ def _run_required(m, X, V, A):
             uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
             uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
             uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
-            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
-            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
-            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+            uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
@@ -3903,47 +3905,28 @@ def _run_required(m, X, V, A):
         # (uhs-W_3) centripetal tensor of link 3
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
-        # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
-        axis_y_uhs_axes3_x = (
-        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
-            uhs_base_frame_xz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_y = (
-        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
-            uhs_base_frame_yz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_z = (
-        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
-            uhs_base_frame_zz*uhs_e_1_in_axes3_y
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
-        )
         # (uhs-S_ddot) acceleration of the connection point
         uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
         uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
         uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
-        uhs_S_ddot_in_axes3_x = (
-        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
-            axis_x_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t = (
+        uhs_S_ddot_x*uhs_base_frame_xx + uhs_S_ddot_y*uhs_base_frame_yx +
+            uhs_S_ddot_z*uhs_base_frame_zx
         )
-        uhs_S_ddot_in_axes3_y = (
-        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_2 = (
+        uhs_S_ddot_x*uhs_base_frame_xy + uhs_S_ddot_y*uhs_base_frame_yy +
+            uhs_S_ddot_z*uhs_base_frame_zy
         )
-        uhs_S_ddot_in_axes3_z = (
-        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
-            axis_z_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_3 = (
+        uhs_S_ddot_x*uhs_base_frame_xz + uhs_S_ddot_y*uhs_base_frame_yz +
+            uhs_S_ddot_z*uhs_base_frame_zz
         )
+        uhs_S_ddot_t_4 = uhs_S_ddot_t*uhs_c_1 + uhs_S_ddot_t_2*uhs_s_1
+        uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
+        uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
+        uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
         uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
         uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
@@ -4009,18 +3992,19 @@ def _run_required(m, X, V, A):
         uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
         uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_g_in_axes3_x = (
-        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
+        uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
+        uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
+        uhs_acc_3_in_axes3_x = (
+        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_h_3_t_12 -
+            uhs_e_2_in_axes3_x*uhs_g_in_axes2_z
         )
-        uhs_g_in_axes3_y = (
-        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
+        uhs_acc_3_in_axes3_y = (
+        uhs_S_ddot_in_axes3_y + uhs_e_2_in_axes3_x*uhs_g_in_axes2_y +
+            uhs_g_in_axes2_z*uhs_h_3_t_12
         )
-        uhs_g_in_axes3_z = (
-        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_g_in_axes3_x
-        uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_g_in_axes3_y
-        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes3_z
+        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes2_x
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
@@ -4045,32 +4029,28 @@ def _run_required(m, X, V, A):
             uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
-        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
-        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
-        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
-        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
-        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_4 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_2 - uhs_mu_2_t_3)
+        uhs_mu_2_t_5 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t - uhs_mu_2_t_3)
+        uhs_mu_2_t_6 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t - uhs_mu_2_t_2)
+        uhs_mu_2_t_7 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_8 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_9 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         uhs_mu_2_in_axes2_x = (
-        uhs_mu_2_t_11 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+        uhs_mu_2_t_7 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
             uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
-            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_8
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_4
         )
         uhs_mu_2_in_axes2_y = (
         uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y -
-            uhs_mu_2_t_12 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_mu_2_t_5 - uhs_mu_2_t_8 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
             uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_in_axes2_z = (
         uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
-            uhs_mu_2_t_10 - uhs_mu_2_t_13 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_mu_2_t_6 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
             uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
@@ -4104,17 +4084,20 @@ def _run_required(m, X, V, A):
         uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
             uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
         )
+        uhs_c_t_6 = uhs_c_in_axes3_x*uhs_e_2_in_axes3_x - uhs_c_in_axes3_y*uhs_h_3_t_12
+        uhs_c_t_7 = uhs_c_in_axes3_x*uhs_h_3_t_12 + uhs_c_in_axes3_y*uhs_e_2_in_axes3_x
+        uhs_c_t_8 = uhs_c_2*uhs_c_in_axes3_z - uhs_c_t_7*uhs_e_1_in_axes3_z
+        uhs_c_t_9 = -uhs_c_2*uhs_c_t_7 - uhs_c_in_axes3_z*uhs_e_1_in_axes3_z
+        uhs_c_t_10 = uhs_c_1*uhs_c_t_8 - uhs_c_t_6*uhs_s_1
+        uhs_c_t_11 = uhs_c_1*uhs_c_t_6 + uhs_c_t_8*uhs_s_1
         uhs_c_x = (
-        axis_x_uhs_axes3_x*uhs_c_in_axes3_x + axis_y_uhs_axes3_x*uhs_c_in_axes3_y +
-            axis_z_uhs_axes3_x*uhs_c_in_axes3_z
+        uhs_base_frame_xx*uhs_c_t_10 + uhs_base_frame_xy*uhs_c_t_11 - uhs_base_frame_xz*uhs_c_t_9
         )
         uhs_c_y = (
-        axis_x_uhs_axes3_y*uhs_c_in_axes3_x + axis_y_uhs_axes3_y*uhs_c_in_axes3_y +
-            axis_z_uhs_axes3_y*uhs_c_in_axes3_z
+        uhs_base_frame_yx*uhs_c_t_10 + uhs_base_frame_yy*uhs_c_t_11 - uhs_base_frame_yz*uhs_c_t_9
         )
         uhs_c_z = (
-        axis_x_uhs_axes3_z*uhs_c_in_axes3_x + axis_y_uhs_axes3_z*uhs_c_in_axes3_y +
-            axis_z_uhs_axes3_z*uhs_c_in_axes3_z
+        uhs_base_frame_zx*uhs_c_t_10 + uhs_base_frame_zy*uhs_c_t_11 - uhs_base_frame_zz*uhs_c_t_9
         )
         # (R_a) moment that actuators and external wrench must give
         uhs_R_a_t = uhs_c_y*uhs_q_z - uhs_c_z*uhs_q_y
@@ -4436,7 +4419,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 858 mul, 537 add, 24 div, 12 sqrt, 12 trig
+# joint_accelerations: 792 mul, 507 add, 24 div, 12 sqrt, 12 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4593,10 +4576,6 @@ def _run_joint_accelerations(m, X, V, A):
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
         inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
-        # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -4637,47 +4616,28 @@ def _run_joint_accelerations(m, X, V, A):
         # (uhs-W_3) centripetal tensor of link 3
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
-        # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
-        axis_y_uhs_axes3_x = (
-        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
-            uhs_base_frame_xz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_y = (
-        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
-            uhs_base_frame_yz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_z = (
-        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
-            uhs_base_frame_zz*uhs_e_1_in_axes3_y
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
-        )
         # (uhs-S_ddot) acceleration of the connection point
         uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
         uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
         uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
-        uhs_S_ddot_in_axes3_x = (
-        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
-            axis_x_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t = (
+        uhs_S_ddot_x*uhs_base_frame_xx + uhs_S_ddot_y*uhs_base_frame_yx +
+            uhs_S_ddot_z*uhs_base_frame_zx
         )
-        uhs_S_ddot_in_axes3_y = (
-        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_2 = (
+        uhs_S_ddot_x*uhs_base_frame_xy + uhs_S_ddot_y*uhs_base_frame_yy +
+            uhs_S_ddot_z*uhs_base_frame_zy
         )
-        uhs_S_ddot_in_axes3_z = (
-        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
-            axis_z_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_3 = (
+        uhs_S_ddot_x*uhs_base_frame_xz + uhs_S_ddot_y*uhs_base_frame_yz +
+            uhs_S_ddot_z*uhs_base_frame_zz
         )
+        uhs_S_ddot_t_4 = uhs_S_ddot_t*uhs_c_1 + uhs_S_ddot_t_2*uhs_s_1
+        uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
+        uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
+        uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
         uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
         uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
@@ -4730,13 +4690,12 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1518 mul, 1143 add, 24 div, 12 sqrt, 12 trig
+# legs: 1512 mul, 1125 add, 24 div, 12 sqrt, 12 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("legs")
-    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4824,12 +4783,12 @@ def _run_legs(m, X, V, A):
             uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
             uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
             uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
-            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
-            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
-            uhs_joint3_offset_x, uhs_link3_mass, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
+            uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+            uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link3_mass,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
@@ -4945,47 +4904,28 @@ def _run_legs(m, X, V, A):
         # (uhs-W_3) centripetal tensor of link 3
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
-        # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
-        axis_y_uhs_axes3_x = (
-        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
-            uhs_base_frame_xz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_y = (
-        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
-            uhs_base_frame_yz*uhs_e_1_in_axes3_y
-        )
-        axis_y_uhs_axes3_z = (
-        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
-            uhs_base_frame_zz*uhs_e_1_in_axes3_y
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
-        )
         # (uhs-S_ddot) acceleration of the connection point
         uhs_S_ddot_x = t_ddot_x + B_p_xy*uhs_q_y + B_p_xz*uhs_q_z - W_p_t_4*uhs_q_x
         uhs_S_ddot_y = t_ddot_y + B_p_yx*uhs_q_x + B_p_yz*uhs_q_z - W_p_t_5*uhs_q_y
         uhs_S_ddot_z = t_ddot_z + B_p_zx*uhs_q_x + B_p_zy*uhs_q_y - W_p_t_6*uhs_q_z
-        uhs_S_ddot_in_axes3_x = (
-        axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
-            axis_x_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t = (
+        uhs_S_ddot_x*uhs_base_frame_xx + uhs_S_ddot_y*uhs_base_frame_yx +
+            uhs_S_ddot_z*uhs_base_frame_zx
         )
-        uhs_S_ddot_in_axes3_y = (
-        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_2 = (
+        uhs_S_ddot_x*uhs_base_frame_xy + uhs_S_ddot_y*uhs_base_frame_yy +
+            uhs_S_ddot_z*uhs_base_frame_zy
         )
-        uhs_S_ddot_in_axes3_z = (
-        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
-            axis_z_uhs_axes3_z*uhs_S_ddot_z
+        uhs_S_ddot_t_3 = (
+        uhs_S_ddot_x*uhs_base_frame_xz + uhs_S_ddot_y*uhs_base_frame_yz +
+            uhs_S_ddot_z*uhs_base_frame_zz
         )
+        uhs_S_ddot_t_4 = uhs_S_ddot_t*uhs_c_1 + uhs_S_ddot_t_2*uhs_s_1
+        uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
+        uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
+        uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
         uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
         uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
@@ -5051,18 +4991,19 @@ def _run_legs(m, X, V, A):
         uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
         uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_g_in_axes3_x = (
-        axis_x_uhs_axes3_x*gravity_x + axis_x_uhs_axes3_y*gravity_y + axis_x_uhs_axes3_z*gravity_z
+        uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
+        uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
+        uhs_acc_3_in_axes3_x = (
+        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_h_3_t_12 -
+            uhs_e_2_in_axes3_x*uhs_g_in_axes2_z
         )
-        uhs_g_in_axes3_y = (
-        axis_y_uhs_axes3_x*gravity_x + axis_y_uhs_axes3_y*gravity_y + axis_y_uhs_axes3_z*gravity_z
+        uhs_acc_3_in_axes3_y = (
+        uhs_S_ddot_in_axes3_y + uhs_e_2_in_axes3_x*uhs_g_in_axes2_y +
+            uhs_g_in_axes2_z*uhs_h_3_t_12
         )
-        uhs_g_in_axes3_z = (
-        axis_z_uhs_axes3_x*gravity_x + axis_z_uhs_axes3_y*gravity_y + axis_z_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_g_in_axes3_x
-        uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_g_in_axes3_y
-        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes3_z
+        uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes2_x
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
         uhs_mu_3_t_2 = uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t)
@@ -5087,32 +5028,28 @@ def _run_legs(m, X, V, A):
             uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
         )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
-        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
-        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
-        uhs_mu_2_t_8 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 - uhs_mu_2_t_6)
-        uhs_mu_2_t_9 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6)
-        uhs_mu_2_t_10 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 - uhs_mu_2_t_5)
-        uhs_mu_2_t_11 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
-        uhs_mu_2_t_12 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
-        uhs_mu_2_t_13 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
+        uhs_mu_2_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_mu_2_t_4 = uhs_J_2_in_spec2_yz*(uhs_mu_2_t_2 - uhs_mu_2_t_3)
+        uhs_mu_2_t_5 = uhs_J_2_in_spec2_xy*(uhs_mu_2_t - uhs_mu_2_t_3)
+        uhs_mu_2_t_6 = uhs_J_2_in_spec2_xz*(uhs_mu_2_t - uhs_mu_2_t_2)
+        uhs_mu_2_t_7 = uhs_g_in_axes2_y*uhs_h_2_in_spec2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z
+        uhs_mu_2_t_8 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_y - uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+        uhs_mu_2_t_9 = uhs_g_in_axes2_x*uhs_h_2_in_spec2_z + uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         uhs_mu_2_in_axes2_x = (
-        uhs_mu_2_t_11 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+        uhs_mu_2_t_7 + uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
             uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
-            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_8
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x - uhs_mu_2_t_4
         )
         uhs_mu_2_in_axes2_y = (
         uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y -
-            uhs_mu_2_t_12 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_mu_2_t_5 - uhs_mu_2_t_8 - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
             uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
         )
         uhs_mu_2_in_axes2_z = (
         uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
-            uhs_mu_2_t_10 - uhs_mu_2_t_13 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
+            uhs_mu_2_t_6 - uhs_mu_2_t_9 - uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy -
             uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
@@ -5150,17 +5087,27 @@ def _run_legs(m, X, V, A):
         uhs_c_true_in_axes3_x = uhs_c_in_axes3_x - uhs_acc_3_in_axes3_x*uhs_link3_mass
         uhs_c_true_in_axes3_y = uhs_c_in_axes3_y - uhs_acc_3_in_axes3_y*uhs_link3_mass
         uhs_c_true_in_axes3_z = uhs_c_in_axes3_z - uhs_acc_3_in_axes3_z*uhs_link3_mass
+        uhs_c_true_t = (
+        uhs_c_true_in_axes3_x*uhs_e_2_in_axes3_x - uhs_c_true_in_axes3_y*uhs_h_3_t_12
+        )
+        uhs_c_true_t_2 = (
+        uhs_c_true_in_axes3_x*uhs_h_3_t_12 + uhs_c_true_in_axes3_y*uhs_e_2_in_axes3_x
+        )
+        uhs_c_true_t_3 = uhs_c_2*uhs_c_true_in_axes3_z - uhs_c_true_t_2*uhs_e_1_in_axes3_z
+        uhs_c_true_t_4 = -uhs_c_2*uhs_c_true_t_2 - uhs_c_true_in_axes3_z*uhs_e_1_in_axes3_z
+        uhs_c_true_t_5 = uhs_c_1*uhs_c_true_t_3 - uhs_c_true_t*uhs_s_1
+        uhs_c_true_t_6 = uhs_c_1*uhs_c_true_t + uhs_c_true_t_3*uhs_s_1
         uhs_c_true_x = (
-        axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y +
-            axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z
+        uhs_base_frame_xx*uhs_c_true_t_5 + uhs_base_frame_xy*uhs_c_true_t_6 -
+            uhs_base_frame_xz*uhs_c_true_t_4
         )
         uhs_c_true_y = (
-        axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y +
-            axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z
+        uhs_base_frame_yx*uhs_c_true_t_5 + uhs_base_frame_yy*uhs_c_true_t_6 -
+            uhs_base_frame_yz*uhs_c_true_t_4
         )
         uhs_c_true_z = (
-        axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y +
-            axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z
+        uhs_base_frame_zx*uhs_c_true_t_5 + uhs_base_frame_zy*uhs_c_true_t_6 -
+            uhs_base_frame_zz*uhs_c_true_t_4
         )
         ok = (
         ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
@@ -5237,12 +5184,12 @@ def _run_potential(m, X):
     potential_uhs, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-            uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
-            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
-            uhs_joint3_offset_x, uhs_link2_mass, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+        inv_uhs_joint3_pitch, uhs_acc_3_t, uhs_acc_3_t_2, uhs_acc_3_t_3, uhs_base_frame_xx,
+            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
+            uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+            uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link2_mass,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3,
             uhs_size_t,
@@ -5294,11 +5241,11 @@ def _run_potential(m, X):
         uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
         # (uhs-q_2) displacement of joint 2
         uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
-        # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
-        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
+        uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
         # (potential) potential energy
         uhs_potential_t_4 = uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1
         uhs_potential_t_5 = (

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HEXAPOD_6X6R_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -985,7 +1018,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
             six_r_link5_centre_of_mass_y*six_r_link5_centre_of_mass_z*six_r_link5_mass;
         const real six_r_J_5_in_spec5_zz = six_r_link5_inertia_zz -
             six_r_link5_mass*(six_r_J_5_t_3 - six_r_J_5_t_4);
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
+        /* (six_r-w_5) force part of reciprocal wrench 5 */
         const real inv_six_r_size = 1/six_r_size;
         /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
         const real six_r_acc_3_t = gravity_x*six_r_base_frame_xy + gravity_y*six_r_base_frame_yy +
@@ -1507,6 +1540,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1523,6 +1557,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1532,6 +1567,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1558,6 +1594,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1588,6 +1625,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1994,22 +2032,22 @@ typedef struct {
         six_r_etad_2_t, six_r_eta_1_2, six_r_eta_2_t, six_r_qd_1_t_3, six_r_qd_1_t_4, six_r_qd_1_t_5,
         six_r_qd_1_t_6, six_r_qd_1_t_7, six_r_qd_1_t_8, six_r_qd_1_t_9, six_r_qd_1_t_10,
         six_r_qd_1_t_11, six_r_qd_4_t, six_r_qd_4_t_2, six_r_qd_5_t, six_r_nd_m1_t, six_r_qd_1_t_17,
-        six_r_qd_1_t_18, six_r_qd_1, six_r_qd_4_t_3, six_r_qd_5_t_2, six_r_omega_1_in_axes2_x_2,
-        six_r_omega_1_in_axes2_y_2, six_r_omega_2_in_axes3_x_2, six_r_omega_2_in_axes3_y_2,
+        six_r_qd_1_t_18, six_r_qd_1, six_r_qd_4_2, six_r_qd_5_2, six_r_omega_1_in_axes2_x_2,
+        six_r_omega_1_t_4, six_r_omega_2_in_axes3_x_2, six_r_omega_2_in_axes3_y_2,
         six_r_W_2_in_axes2_yz_2, six_r_omega_3_in_axes3_z_2, six_r_omega_3_in_axes4_x_2,
         six_r_omega_3_in_axes4_y_2, six_r_omega_4_in_axes4_z_2, six_r_omega_4_in_axes5_y_2,
         six_r_W_4_in_axes5_xy_2, six_r_omega_5_in_axes5_z_2, six_r_W_5_t_4, six_r_W_5_t_5,
         six_r_W_5_t_6, six_r_W_5_in_axes5_xz_2, six_r_zeta_2_in_axes2_y_2, six_r_zeta_3_t_2,
-        six_r_zeta_3_in_axes3_y, six_r_zeta_4_in_axes4_x_2, six_r_zeta_4_in_axes4_y, six_r_zeta_5_t_2,
-        six_r_zeta_5_in_axes5_y, six_r_bias_t_19, six_r_bias_t_20, six_r_bias_in_axes5_x_2,
-        six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2, six_r_nu_2_2,
-        six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z, six_r_qdd_1_t_3,
-        six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_Q_xx, six_r_Q_yy,
+        six_r_zeta_3_in_axes3_y, six_r_zeta_4_in_axes4_x_2, six_r_zeta_4_in_axes4_y,
+        six_r_zeta_5_in_axes5_x_2, six_r_zeta_5_t_2, six_r_bias_t_19, six_r_bias_t_20,
+        six_r_bias_in_axes5_x_2, six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2,
+        six_r_nu_2_2, six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z,
+        six_r_qdd_1_t_3, six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_U_x,
+        six_r_U_y, six_r_U_z, six_r_Z_a_t, six_r_Z_a_t_2, six_r_Z_a_t_3, six_r_Q_xx, six_r_Q_yy,
         six_r_Q_zz, six_r_Q_xy, six_r_Q_xz, six_r_Q_yz, six_r_M_ta_t_13, six_r_M_ta_t_14,
         six_r_M_ta_t_15, six_r_M_ta_t_16, six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19,
         six_r_M_ta_t_20, six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3,
-        six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_U_x, six_r_U_y, six_r_U_z, six_r_Z_a_t,
-        six_r_Z_a_t_2, six_r_Z_a_t_3, six_r_o_2_x_2, six_r_o_2_y_2, six_r_o_2_z_2,
+        six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_o_2_x_2, six_r_o_2_y_2, six_r_o_2_z_2,
         six_r_acc_5_in_axes5_x, six_r_acc_5_in_axes5_y, six_r_acc_5_in_axes5_z, six_r_c_in_axes5_x,
         six_r_c_in_axes5_y, six_r_c_in_axes5_z, six_r_c_m_x, six_r_c_m_y, six_r_c_m_z;
 } values_six_r;
@@ -2590,26 +2628,26 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     v->six_r_qd_1_t_17 = v->inv_six_r_w_1_t_75*(v->six_r_m2_w_1_t*six_r_qd_1_t_16 -
         v->six_r_m1_w_1_t*six_r_qd_1_t_15 + v->six_r_qd_1_t_10 - v->six_r_qd_1_t_11 -
         v->six_r_qd_1_t_9);
-    v->six_r_qd_1_t_18 = -v->inv_six_r_w_1_t_63*(six_r_qd_1_t_16*v->six_r_w_1_t_68 -
+    v->six_r_qd_1_t_18 = v->inv_six_r_w_1_t_63*(six_r_qd_1_t_16*v->six_r_w_1_t_68 -
         six_r_qd_1_t_15*v->six_r_w_1_t_67 + v->six_r_qd_1_t_7 - v->six_r_qd_1_t_6 -
         v->six_r_qd_1_t_8 - v->six_r_qd_1_t_17*v->six_r_w_1_t_69);
     v->six_r_qd_1 = v->inv_six_r_w_1_t_45*(six_r_qd_1_t_15*v->six_r_w_1_t_49 -
         six_r_qd_1_t_16*v->six_r_w_1_t_50 + v->six_r_qd_1_t_3 + v->six_r_qd_1_t_5 -
-        v->six_r_qd_1_t_4 + v->six_r_qd_1_t_17*v->six_r_w_1_t_57 -
+        v->six_r_qd_1_t_4 + v->six_r_qd_1_t_17*v->six_r_w_1_t_57 +
         v->six_r_qd_1_t_18*v->six_r_w_1_t_51);
     /* (six_r-qd_4) */
-    v->six_r_qd_4_t_3 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t_16*v->six_r_w_1_t_28 -
+    v->six_r_qd_4_2 = -v->inv_six_r_w_1_t_24*(six_r_qd_1_t_16*v->six_r_w_1_t_28 -
         six_r_qd_1_t_15*v->six_r_w_1_t_27 + v->six_r_qd_4_t - v->six_r_qd_4_t_2 +
-        v->six_r_qd_1_t_17*v->six_r_w_1_t_40 - v->six_r_qd_1_t_18*v->six_r_w_1_t_35 -
+        v->six_r_qd_1_t_17*v->six_r_w_1_t_40 + v->six_r_qd_1_t_18*v->six_r_w_1_t_35 -
         v->six_r_qd_1*v->six_r_w_1_t_29);
     /* (six_r-qd_5) */
-    v->six_r_qd_5_t_2 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_16*v->six_r_w_1_t_10 -
-        v->six_r_qd_5_t + v->six_r_qd_1_t_17*v->six_r_w_1_t_21 +
-        v->six_r_qd_1_t_18*v->six_r_w_1_t_18 + v->six_r_qd_1*v->six_r_w_1_t_14 -
-        v->six_r_qd_4_t_3*v->six_r_w_1_t_11);
+    v->six_r_qd_5_2 = v->inv_six_r_w_1_t_8*(v->six_r_qd_5_t -
+        six_r_qd_1_t_16*v->six_r_w_1_t_10 - v->six_r_qd_1_t_17*v->six_r_w_1_t_21 +
+        v->six_r_qd_1_t_18*v->six_r_w_1_t_18 - v->six_r_qd_1*v->six_r_w_1_t_14 -
+        v->six_r_qd_4_2*v->six_r_w_1_t_11);
     /* (six_r-omega_1) angular velocity of link 1 */
     v->six_r_omega_1_in_axes2_x_2 = v->six_r_c_2*v->six_r_qd_1;
-    v->six_r_omega_1_in_axes2_y_2 = -v->six_r_qd_1*v->six_r_s_2;
+    v->six_r_omega_1_t_4 = v->six_r_qd_1*v->six_r_s_2;
     const real six_r_omega_1_in_axes5_x = v->six_r_e_1_in_axes5_x*v->six_r_qd_1;
     const real six_r_omega_1_in_axes5_y = v->six_r_e_1_in_axes5_y*v->six_r_qd_1;
     const real six_r_omega_1_in_axes5_z = v->six_r_e_1_in_axes5_z*v->six_r_qd_1;
@@ -2618,18 +2656,18 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_W_1_in_axes5_xz_2 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
     const real six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
     /* (six_r-omega_2) angular velocity of link 2 */
-    v->six_r_omega_2_in_axes3_x_2 = v->six_r_omega_1_in_axes2_x_2*v->six_r_s_3 -
-        v->six_r_c_3*v->six_r_omega_1_in_axes2_y_2;
-    v->six_r_omega_2_in_axes3_y_2 = v->six_r_c_3*v->six_r_omega_1_in_axes2_x_2 +
-        v->six_r_omega_1_in_axes2_y_2*v->six_r_s_3;
-    const real six_r_omega_2_in_axes5_x_2 = v->six_r_e_2_in_axes5_x*v->six_r_qd_1_t_18 +
-        six_r_omega_1_in_axes5_x;
-    const real six_r_omega_2_in_axes5_y_2 = v->six_r_e_2_in_axes5_y*v->six_r_qd_1_t_18 +
-        six_r_omega_1_in_axes5_y;
-    const real six_r_omega_2_in_axes5_z_2 = v->six_r_e_2_in_axes5_z*v->six_r_qd_1_t_18 +
-        six_r_omega_1_in_axes5_z;
+    v->six_r_omega_2_in_axes3_x_2 = v->six_r_c_3*v->six_r_omega_1_t_4 +
+        v->six_r_omega_1_in_axes2_x_2*v->six_r_s_3;
+    v->six_r_omega_2_in_axes3_y_2 = v->six_r_c_3*v->six_r_omega_1_in_axes2_x_2 -
+        v->six_r_omega_1_t_4*v->six_r_s_3;
+    const real six_r_omega_2_in_axes5_x_2 = six_r_omega_1_in_axes5_x -
+        v->six_r_e_2_in_axes5_x*v->six_r_qd_1_t_18;
+    const real six_r_omega_2_in_axes5_y_2 = six_r_omega_1_in_axes5_y -
+        v->six_r_e_2_in_axes5_y*v->six_r_qd_1_t_18;
+    const real six_r_omega_2_in_axes5_z_2 = six_r_omega_1_in_axes5_z -
+        v->six_r_e_2_in_axes5_z*v->six_r_qd_1_t_18;
     /* (six_r-W_2) centripetal tensor of link 2 */
-    v->six_r_W_2_in_axes2_yz_2 = v->six_r_omega_1_in_axes2_y_2*v->six_r_qd_1_t_18;
+    v->six_r_W_2_in_axes2_yz_2 = v->six_r_omega_1_t_4*v->six_r_qd_1_t_18;
     const real six_r_W_2_in_axes5_xy_2 =
         six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2;
     const real six_r_W_2_in_axes5_xz_2 =
@@ -2637,7 +2675,7 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_W_2_in_axes5_yz_2 =
         six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2;
     /* (six_r-omega_3) angular velocity of link 3 */
-    v->six_r_omega_3_in_axes3_z_2 = v->six_r_qd_1_t_18 - v->six_r_qd_1_t_17;
+    v->six_r_omega_3_in_axes3_z_2 = -v->six_r_qd_1_t_17 - v->six_r_qd_1_t_18;
     v->six_r_omega_3_in_axes4_x_2 = v->six_r_h_4_t*v->six_r_omega_3_in_axes3_z_2 -
         v->six_r_e_2_in_axes5_z*v->six_r_omega_2_in_axes3_x_2;
     v->six_r_omega_3_in_axes4_y_2 = v->six_r_e_2_in_axes5_z*v->six_r_omega_3_in_axes3_z_2 +
@@ -2652,7 +2690,7 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_W_3_in_axes5_xy_2 =
         six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2;
     /* (six_r-omega_4) angular velocity of link 4 */
-    v->six_r_omega_4_in_axes4_z_2 = v->six_r_omega_2_in_axes3_y_2 - v->six_r_qd_4_t_3;
+    v->six_r_omega_4_in_axes4_z_2 = v->six_r_omega_2_in_axes3_y_2 + v->six_r_qd_4_2;
     const real six_r_omega_4_in_axes5_x_2 =
         v->six_r_e_4_in_axes5_x*v->six_r_omega_4_in_axes4_z_2 + six_r_omega_3_t_3;
     v->six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 -
@@ -2660,14 +2698,14 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     /* (six_r-W_4) centripetal tensor of link 4 */
     v->six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*v->six_r_omega_4_in_axes5_y_2;
     /* (six_r-omega_5) angular velocity of link 5 */
-    v->six_r_omega_5_in_axes5_z_2 = v->six_r_omega_3_in_axes4_y_2 - v->six_r_qd_5_t_2;
+    v->six_r_omega_5_in_axes5_z_2 = v->six_r_omega_3_in_axes4_y_2 + v->six_r_qd_5_2;
     /* (six_r-W_5) centripetal tensor of link 5 */
     v->six_r_W_5_t_4 = v->six_r_omega_4_in_axes5_y_2*v->six_r_omega_4_in_axes5_y_2;
     v->six_r_W_5_t_5 = v->six_r_omega_5_in_axes5_z_2*v->six_r_omega_5_in_axes5_z_2;
     v->six_r_W_5_t_6 = v->six_r_W_5_t_4 + v->six_r_W_5_t_5;
     v->six_r_W_5_in_axes5_xz_2 = six_r_omega_4_in_axes5_x_2*v->six_r_omega_5_in_axes5_z_2;
     /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    v->six_r_zeta_2_in_axes2_y_2 = -v->six_r_omega_1_in_axes2_x_2*v->six_r_qd_1_t_18;
+    v->six_r_zeta_2_in_axes2_y_2 = v->six_r_omega_1_in_axes2_x_2*v->six_r_qd_1_t_18;
     const real six_r_zeta_2_in_axes3_x_2 = v->six_r_W_2_in_axes2_yz_2*v->six_r_s_3 -
         v->six_r_c_3*v->six_r_zeta_2_in_axes2_y_2;
     const real six_r_zeta_2_in_axes3_y_2 = v->six_r_W_2_in_axes2_yz_2*v->six_r_c_3 +
@@ -2688,8 +2726,8 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*v->six_r_e_2_in_axes5_z;
     const real six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*v->six_r_h_4_t;
     /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    v->six_r_zeta_4_in_axes4_x_2 = -v->six_r_omega_3_in_axes4_y_2*v->six_r_qd_4_t_3;
-    v->six_r_zeta_4_in_axes4_y = v->six_r_omega_3_in_axes4_x_2*v->six_r_qd_4_t_3;
+    v->six_r_zeta_4_in_axes4_x_2 = v->six_r_omega_3_in_axes4_y_2*v->six_r_qd_4_2;
+    v->six_r_zeta_4_in_axes4_y = -v->six_r_omega_3_in_axes4_x_2*v->six_r_qd_4_2;
     /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
     const real six_r_beta_4_in_axes4_x_2 = v->six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2;
     const real six_r_beta_4_in_axes4_y_2 = v->six_r_zeta_4_in_axes4_y +
@@ -2701,12 +2739,12 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*v->six_r_e_4_in_axes5_x -
         six_r_beta_4_t_4;
     /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-    v->six_r_zeta_5_t_2 = v->six_r_omega_4_in_axes5_y_2*v->six_r_qd_5_t_2;
-    v->six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*v->six_r_qd_5_t_2;
+    v->six_r_zeta_5_in_axes5_x_2 = v->six_r_omega_4_in_axes5_y_2*v->six_r_qd_5_2;
+    v->six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*v->six_r_qd_5_2;
     /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - v->six_r_zeta_5_t_2;
-    const real six_r_beta_5_in_axes5_y_2 = v->six_r_zeta_5_in_axes5_y +
-        six_r_beta_4_in_axes5_y_2;
+    const real six_r_beta_5_in_axes5_x_2 = v->six_r_zeta_5_in_axes5_x_2 +
+        six_r_beta_4_in_axes5_x_2;
+    const real six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 - v->six_r_zeta_5_t_2;
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     v->six_r_bias_t_19 = v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_3_in_axes4_y_2;
     v->six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2;
@@ -2831,6 +2869,580 @@ INLINE void stage_six_r_A_V_X_q(const prepared *m, size_t i, values_six_r *v)
         six_r_rel_in_axes5_y*v->six_r_w_1_t_9 + v->six_r_qdd_1_t_3*v->six_r_w_1_t_21 -
         v->six_r_qdd_1_t_4*v->six_r_w_1_t_18 + v->six_r_qdd_1_t_5*v->six_r_w_1_t_14 -
         v->six_r_qdd_4*v->six_r_w_1_t_11);
+}
+
+INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_six_r *v)
+{
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_eta_1 = omega_x*v->six_r_n_m1_x + omega_y*v->six_r_n_m1_y +
+        omega_z*v->six_r_n_m1_z;
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    const real six_r_eta_2 = omega_x*v->six_r_n_m2_x + omega_y*v->six_r_n_m2_y +
+        omega_z*v->six_r_n_m2_z;
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t = six_r_eta_1*m->six_r_size[i];
+    const real six_r_qd_1_t_2 = six_r_eta_2*m->six_r_size[i];
+    const real six_r_qd_1_t_12 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qd_1_t +
+        v->six_r_m2_w_1_t*six_r_qd_1_t_2 + v->six_r_qd_1_t_11 + v->six_r_qd_1_t_9 -
+        v->six_r_qd_1_t_10);
+    const real six_r_qd_1_t_13 = v->inv_six_r_w_1_t_63*(six_r_qd_1_t*v->six_r_w_1_t_67 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_68 + v->six_r_qd_1_t_6 + v->six_r_qd_1_t_8 -
+        v->six_r_qd_1_t_7 - six_r_qd_1_t_12*v->six_r_w_1_t_69);
+    const real six_r_qd_1_t_14 = v->inv_six_r_w_1_t_45*(v->six_r_qd_1_t_4 -
+        six_r_qd_1_t*v->six_r_w_1_t_49 - six_r_qd_1_t_2*v->six_r_w_1_t_50 - v->six_r_qd_1_t_3
+        - v->six_r_qd_1_t_5 + six_r_qd_1_t_12*v->six_r_w_1_t_57 +
+        six_r_qd_1_t_13*v->six_r_w_1_t_51);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t*v->six_r_w_1_t_27 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_28 + v->six_r_qd_4_t_2 - v->six_r_qd_4_t +
+        six_r_qd_1_t_12*v->six_r_w_1_t_40 + six_r_qd_1_t_13*v->six_r_w_1_t_35 -
+        six_r_qd_1_t_14*v->six_r_w_1_t_29);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_2*v->six_r_w_1_t_10 +
+        v->six_r_qd_5_t + six_r_qd_1_t_12*v->six_r_w_1_t_21 -
+        six_r_qd_1_t_13*v->six_r_w_1_t_18 + six_r_qd_1_t_14*v->six_r_w_1_t_14 -
+        six_r_qd_4*v->six_r_w_1_t_11);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    const real six_r_omega_1_in_axes2_x = -v->six_r_c_2*six_r_qd_1_t_14;
+    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*v->six_r_s_2;
+    const real six_r_omega_1_t = v->six_r_e_1_in_axes5_x*six_r_qd_1_t_14;
+    const real six_r_omega_1_t_2 = v->six_r_e_1_in_axes5_y*six_r_qd_1_t_14;
+    const real six_r_omega_1_t_3 = v->six_r_e_1_in_axes5_z*six_r_qd_1_t_14;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
+    const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
+    const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
+        v->six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v->six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = v->six_r_e_2_in_axes5_x*six_r_qd_1_t_13 -
+        six_r_omega_1_t;
+    const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_13 -
+        six_r_omega_1_t_2;
+    const real six_r_omega_2_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_qd_1_t_13 -
+        six_r_omega_1_t_3;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13;
+    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
+    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
+    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
+    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13;
+    const real six_r_omega_3_in_axes4_x = v->six_r_h_4_t*six_r_omega_3_in_axes3_z -
+        v->six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v->six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
+        v->six_r_h_4_t*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_t = v->six_r_J_5_t*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_t_2 = v->six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
+        six_r_omega_3_t;
+    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+        v->six_r_J_5_t*six_r_omega_2_in_axes3_y;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
+    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
+    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
+    const real six_r_omega_4_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
+        six_r_omega_3_t;
+    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+        v->six_r_J_5_t*six_r_omega_4_in_axes4_z;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
+    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
+    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-u_1) centripetal acceleration of the connection point */
+    const real six_r_u_1_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15;
+    const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
+    const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
+    const real six_r_u_1_in_axes5_x = v->axis_x_six_r_axes5_x*six_r_u_1_x +
+        v->axis_x_six_r_axes5_y*six_r_u_1_y + v->axis_x_six_r_axes5_z*six_r_u_1_z;
+    const real six_r_u_1_in_axes5_y = v->axis_y_six_r_axes5_x*six_r_u_1_x +
+        v->axis_y_six_r_axes5_y*six_r_u_1_y + v->axis_y_six_r_axes5_z*six_r_u_1_z;
+    const real six_r_u_1_in_axes5_z = v->axis_z_six_r_axes5_x*six_r_u_1_x +
+        v->axis_z_six_r_axes5_y*six_r_u_1_y + v->axis_z_six_r_axes5_z*six_r_u_1_z;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
+        v->six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
+        v->six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
+        v->six_r_J_5_t*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y -
+        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t;
+    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12;
+    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
+    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_h_4_t;
+    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
+    const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
+        v->six_r_J_5_t*six_r_beta_4_in_axes4_x;
+    const real six_r_beta_4_t_2 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
+        six_r_beta_4_t_2;
+    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
+    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
+    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+    const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
+    const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
+    const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
+    const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
+    const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+    const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+        v->six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
+        v->six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+        v->six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+        v->six_r_d_4_in_axes5_x*(six_r_bias_t +
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+        v->six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z -
+        v->six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+        v->six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        v->six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
+        + v->six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) +
+        six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y -
+        v->six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+        v->six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_e_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) -
+        v->six_r_bias_t_16*(six_r_beta_4_t + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y
+        - v->six_r_J_5_t*six_r_beta_3_t) +
+        v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        six_r_beta_4_in_axes5_y) -
+        v->six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
+        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
+        - six_r_beta_5_in_axes5_y);
+    /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
+       accelerations */
+    const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
+    const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
+    const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t = v->six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_end_p1_in_axes5_y -
+        six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v->six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
+    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1_2 -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*v->six_r_end_p1_in_axes5_y;
+    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
+        six_r_nu_1_t_3*(v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
+    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
+    /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
+    const real six_r_qdd_1_o_t_3 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qdd_1_o_t +
+        v->six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_76 -
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_77 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_78);
+    const real six_r_qdd_1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_qdd_1_o_t*v->six_r_w_1_t_67 +
+        six_r_qdd_1_o_t_2*v->six_r_w_1_t_68 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_64 -
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_65 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_66 -
+        six_r_qdd_1_o_t_3*v->six_r_w_1_t_69);
+    const real six_r_qdd_1_o_t_5 =
+        v->inv_six_r_w_1_t_45*(six_r_rel_o_in_axes5_y*v->six_r_w_1_t_47 -
+        six_r_qdd_1_o_t*v->six_r_w_1_t_49 - six_r_qdd_1_o_t_2*v->six_r_w_1_t_50 -
+        six_r_rel_o_in_axes5_x*v->six_r_w_1_t_46 - six_r_rel_o_in_axes5_z*v->six_r_w_1_t_48 +
+        six_r_qdd_1_o_t_3*v->six_r_w_1_t_57 + six_r_qdd_1_o_t_4*v->six_r_w_1_t_51);
+    /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
+    const real six_r_qdd_4_o = v->inv_six_r_w_1_t_24*(six_r_qdd_1_o_t*v->six_r_w_1_t_27 +
+        six_r_qdd_1_o_t_2*v->six_r_w_1_t_28 - six_r_rel_o_in_axes5_y*v->six_r_w_1_t_25 +
+        six_r_rel_o_in_axes5_z*v->six_r_w_1_t_26 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_40 +
+        six_r_qdd_1_o_t_4*v->six_r_w_1_t_35 - six_r_qdd_1_o_t_5*v->six_r_w_1_t_29);
+    /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real six_r_alpha_1_o_t = v->six_r_c_2*six_r_qdd_1_o_t_5;
+    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v->six_r_s_2;
+    /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
+    const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
+        six_r_alpha_1_o_in_axes2_y;
+    /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
+    const real six_r_B_2_o_in_axes2_zx = -six_r_zeta_2_in_axes2_y -
+        six_r_alpha_2_o_in_axes2_y;
+    const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
+    /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
+    const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
+        six_r_alpha_2_o_in_axes2_x*v->six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v->six_r_c_3;
+    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v->six_r_c_3 -
+        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v->six_r_s_3;
+    const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
+    /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
+    const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
+    const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
+    const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
+    /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
+    const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
+        six_r_alpha_3_o_in_axes3_z*v->six_r_h_4_t -
+        six_r_alpha_3_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v->six_r_e_2_in_axes5_z
+        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v->six_r_h_4_t;
+    const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
+    /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
+    const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
+    const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
+    const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
+    const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
+    /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
+    const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
+        v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
+        six_r_alpha_4_o_in_axes4_z*v->six_r_e_4_in_axes5_x;
+    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v->six_r_e_4_in_axes5_x
+        - six_r_zeta_5_t - v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
+    const real six_r_alpha_5_o_in_axes5_z =
+        v->inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*v->six_r_w_1_t_10 +
+        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_9 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_21 -
+        six_r_qdd_1_o_t_4*v->six_r_w_1_t_18 + six_r_qdd_1_o_t_5*v->six_r_w_1_t_14 -
+        six_r_qdd_4_o*v->six_r_w_1_t_11) + six_r_alpha_4_o_in_axes4_y;
+    /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
+    const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
+    const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
+    const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
+    const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
+    /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
+    const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
+    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_13*six_r_qd_1_t_13;
+    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
+        six_r_a_o_3_o_t);
+    const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v->six_r_s_3 -
+        six_r_a_o_3_o_in_axes2_y*v->six_r_c_3;
+    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v->six_r_c_3 +
+        six_r_a_o_3_o_in_axes2_y*v->six_r_s_3;
+    /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
+    const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
+        + six_r_a_o_3_o_in_axes3_x;
+    const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
+        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
+        six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
+    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
+    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v->six_r_g_in_axes3_x;
+    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v->six_r_g_in_axes3_y;
+    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v->six_r_g_in_axes1_y;
+    /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
+    const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+    const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
+        six_r_f_3_o_t) + six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
+        six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_y = six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
+        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
+    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
+        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t) +
+        six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
+    /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
+    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_x - six_r_a_o_4_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v->six_r_h_4_t -
+        v->six_r_g_in_axes4_y + six_r_a_o_4_o_in_axes3_z*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v->six_r_g_in_axes3_y;
+    /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
+    const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+    const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
+    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
+        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2) +
+        six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2) +
+        six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i];
+    const real six_r_f_4_o_in_axes4_z = six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
+        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
+        six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
+    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v->six_r_h_4_t -
+        v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
+    const real six_r_f_4_o_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
+        six_r_f_4_o_in_axes4_x*v->six_r_h_4_t;
+    /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
+    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - v->six_r_g_in_axes5_x;
+    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - v->six_r_g_in_axes5_y;
+    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z - v->six_r_g_in_axes5_z;
+    /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
+       reference points */
+    const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
+        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
+        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
+        six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_mu_5_o_in_axes5_y = six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
+        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
+        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
+        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
+        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
+        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_mu_5_o_in_axes5_z = six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
+        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
+        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
+        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
+        six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
+    /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
+       reference points */
+    const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
+        six_r_f_4_o_t_2) + six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_y =
+        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
+        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
+        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
+        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
+    const real six_r_mu_4_o_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t -
+        six_r_bias_t) + six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
+        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
+        six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
+        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
+        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
+        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
+    /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
+       connection point left out */
+    const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
+        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
+        v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+    const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
+    const real six_r_N_4_o_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
+    /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
+       reference points */
+    const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
+        six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
+        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_o_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
+        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
+        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
+        six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_mu_3_o_in_axes3_z =
+        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
+        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
+        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
+        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
+        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
+        six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
+        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
+    /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
+       connection point left out */
+    const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
+        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v->six_r_h_4_t -
+        six_r_N_4_o_in_axes4_x*v->six_r_e_2_in_axes5_z;
+    const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
+    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
+        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
+        six_r_N_4_o_in_axes4_y*v->six_r_e_2_in_axes5_z +
+        six_r_N_4_o_in_axes4_x*v->six_r_h_4_t;
+    /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
+       */
+    const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
+    const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
+    const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
+    /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
+    const real six_r_mu_2_o_in_axes2_x = m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t -
+        six_r_a_o_3_o_t_2) - v->six_r_mu_2_t +
+        six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
+        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_mu_2_o_in_axes2_y =
+        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y - v->six_r_mu_2_t_2 -
+        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
+        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
+        six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
+        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_mu_2_o_in_axes2_z = m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t -
+        six_r_a_o_3_o_t) - v->six_r_mu_2_t_3 +
+        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
+        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
+        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
+        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t;
+    /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
+       connection point left out */
+    const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
+        six_r_N_3_o_in_axes3_x*v->six_r_s_3 + six_r_N_3_o_in_axes3_y*v->six_r_c_3;
+    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
+        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
+        six_r_N_3_o_in_axes3_y*v->six_r_s_3 - six_r_N_3_o_in_axes3_x*v->six_r_c_3;
+    const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
+        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v->six_r_c_3 -
+        six_r_T_3_o_in_axes3_y*v->six_r_s_3) + six_r_N_3_o_in_axes3_z;
+    /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real six_r_mu_1_o_in_axes1_z = -v->six_r_mu_1_t -
+        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
+    /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
+       connection point left out */
+    const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
+        six_r_N_2_o_in_axes2_x*v->six_r_c_2 - six_r_N_2_o_in_axes2_y*v->six_r_s_2;
+    /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m1_o_t = v->inv_six_r_w_1_t_8*six_r_mu_5_o_in_axes5_z;
+    const real six_r_G_m1_o_t_2 = v->inv_six_r_w_1_t_24*(six_r_G_m1_o_t*v->six_r_w_1_t_11 -
+        six_r_N_4_o_in_axes4_z);
+    const real six_r_G_m1_o_t_3 = v->inv_six_r_w_1_t_45*(six_r_G_m1_o_t*v->six_r_w_1_t_14 +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_29 - six_r_N_1_o_in_axes1_z);
+    const real six_r_G_m1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_G_m1_o_t*v->six_r_w_1_t_18 +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_35 - six_r_N_2_o_in_axes2_z -
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_51);
+    const real six_r_G_m1_o_t_5 = v->inv_six_r_w_1_t_75*(six_r_G_m1_o_t*v->six_r_w_1_t_21 +
+        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*v->six_r_w_1_t_40 +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_57 + six_r_G_m1_o_t_4*v->six_r_w_1_t_69);
+    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_27 +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_49 + six_r_G_m1_o_t_4*v->six_r_w_1_t_67 -
+        six_r_G_m1_o_t_5*v->six_r_m1_w_1_t);
+    /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
+       and weight along all degrees of freedom */
+    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_28 -
+        six_r_G_m1_o_t*v->six_r_w_1_t_10 + six_r_G_m1_o_t_3*v->six_r_w_1_t_50 +
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_68 - six_r_G_m1_o_t_5*v->six_r_m2_w_1_t);
+    /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
+       weight along all degrees of freedom */
+    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v->six_r_end_p1_in_axes5_y;
+    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_z -
+        six_r_G_m1_o_t_6*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
+       the connection point */
+    const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
+        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] +
+        six_r_G_m1_o_t_3*v->six_r_w_1_t_46 + six_r_G_m1_o_t_4*v->six_r_w_1_t_64 -
+        six_r_G_m1_o_t_5*v->six_r_w_1_t_76;
+    const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v->six_r_w_1_t_9 -
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_25 - six_r_G_m1_o_t_3*v->six_r_w_1_t_47 -
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_65 + six_r_G_m1_o_t_5*v->six_r_w_1_t_77;
+    const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
+        six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
+        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] +
+        six_r_G_m1_o_t_2*v->six_r_w_1_t_26 + six_r_G_m1_o_t_3*v->six_r_w_1_t_48 +
+        six_r_G_m1_o_t_4*v->six_r_w_1_t_66 - six_r_G_m1_o_t_5*v->six_r_w_1_t_78;
+    /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
+    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_y;
+    /* (six_r-U) velocity and gravity terms of the leg force */
+    v->six_r_U_x = -v->axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
+    v->six_r_U_y = -v->axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
+    v->six_r_U_z = -v->axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
+        v->axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
+        v->axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
+    /* (Z_a) rotational part of Z */
+    v->six_r_Z_a_t = v->axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + v->six_r_U_z*v->six_r_q_y -
+        v->axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - v->six_r_U_y*v->six_r_q_z;
+    v->six_r_Z_a_t_2 = v->axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + v->six_r_U_x*v->six_r_q_z -
+        v->axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - v->six_r_U_z*v->six_r_q_x;
+    v->six_r_Z_a_t_3 = v->axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + v->six_r_U_y*v->six_r_q_x -
+        v->axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - v->six_r_U_x*v->six_r_q_y;
 }
 
 INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
@@ -3625,580 +4237,6 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         v->six_r_M_ta_t_15*v->six_r_q_y;
 }
 
-INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_six_r *v)
-{
-    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real six_r_eta_1 = omega_x*v->six_r_n_m1_x + omega_y*v->six_r_n_m1_y +
-        omega_z*v->six_r_n_m1_z;
-    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-    const real six_r_eta_2 = omega_x*v->six_r_n_m2_x + omega_y*v->six_r_n_m2_y +
-        omega_z*v->six_r_n_m2_z;
-    /* (six_r-qd_1) rate of joint 1 */
-    const real six_r_qd_1_t = six_r_eta_1*m->six_r_size[i];
-    const real six_r_qd_1_t_2 = six_r_eta_2*m->six_r_size[i];
-    const real six_r_qd_1_t_12 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qd_1_t +
-        v->six_r_m2_w_1_t*six_r_qd_1_t_2 + v->six_r_qd_1_t_11 + v->six_r_qd_1_t_9 -
-        v->six_r_qd_1_t_10);
-    const real six_r_qd_1_t_13 = v->inv_six_r_w_1_t_63*(six_r_qd_1_t*v->six_r_w_1_t_67 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_68 + v->six_r_qd_1_t_6 + v->six_r_qd_1_t_8 -
-        v->six_r_qd_1_t_7 - six_r_qd_1_t_12*v->six_r_w_1_t_69);
-    const real six_r_qd_1_t_14 = v->inv_six_r_w_1_t_45*(v->six_r_qd_1_t_4 -
-        six_r_qd_1_t*v->six_r_w_1_t_49 - six_r_qd_1_t_2*v->six_r_w_1_t_50 - v->six_r_qd_1_t_3
-        - v->six_r_qd_1_t_5 + six_r_qd_1_t_12*v->six_r_w_1_t_57 +
-        six_r_qd_1_t_13*v->six_r_w_1_t_51);
-    /* (six_r-qd_4) rate of joint 4 */
-    const real six_r_qd_4 = v->inv_six_r_w_1_t_24*(six_r_qd_1_t*v->six_r_w_1_t_27 +
-        six_r_qd_1_t_2*v->six_r_w_1_t_28 + v->six_r_qd_4_t_2 - v->six_r_qd_4_t +
-        six_r_qd_1_t_12*v->six_r_w_1_t_40 + six_r_qd_1_t_13*v->six_r_w_1_t_35 -
-        six_r_qd_1_t_14*v->six_r_w_1_t_29);
-    /* (six_r-qd_5) rate of joint 5 */
-    const real six_r_qd_5 = v->inv_six_r_w_1_t_8*(six_r_qd_1_t_2*v->six_r_w_1_t_10 +
-        v->six_r_qd_5_t + six_r_qd_1_t_12*v->six_r_w_1_t_21 -
-        six_r_qd_1_t_13*v->six_r_w_1_t_18 + six_r_qd_1_t_14*v->six_r_w_1_t_14 -
-        six_r_qd_4*v->six_r_w_1_t_11);
-    /* (six_r-omega_1) angular velocity of link 1 */
-    const real six_r_omega_1_in_axes2_x = -v->six_r_c_2*six_r_qd_1_t_14;
-    const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_14*v->six_r_s_2;
-    const real six_r_omega_1_t = v->six_r_e_1_in_axes5_x*six_r_qd_1_t_14;
-    const real six_r_omega_1_t_2 = v->six_r_e_1_in_axes5_y*six_r_qd_1_t_14;
-    const real six_r_omega_1_t_3 = v->six_r_e_1_in_axes5_z*six_r_qd_1_t_14;
-    /* (six_r-W_1) centripetal tensor of link 1 */
-    const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
-    const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
-    const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
-    /* (six_r-omega_2) angular velocity of link 2 */
-    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
-        v->six_r_c_3*six_r_omega_1_in_axes2_y;
-    const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
-        six_r_omega_1_in_axes2_y*v->six_r_s_3;
-    const real six_r_omega_2_in_axes5_x = v->six_r_e_2_in_axes5_x*six_r_qd_1_t_13 -
-        six_r_omega_1_t;
-    const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_13 -
-        six_r_omega_1_t_2;
-    const real six_r_omega_2_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_qd_1_t_13 -
-        six_r_omega_1_t_3;
-    /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13;
-    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-    /* (six_r-omega_3) angular velocity of link 3 */
-    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13;
-    const real six_r_omega_3_in_axes4_x = v->six_r_h_4_t*six_r_omega_3_in_axes3_z -
-        v->six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v->six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
-        v->six_r_h_4_t*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_t = v->six_r_J_5_t*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_t_2 = v->six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
-        six_r_omega_3_t;
-    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        v->six_r_J_5_t*six_r_omega_2_in_axes3_y;
-    /* (six_r-W_3) centripetal tensor of link 3 */
-    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_t_3 = six_r_W_3_t_2 + six_r_W_3_t;
-    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-    /* (six_r-omega_4) angular velocity of link 4 */
-    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
-        six_r_omega_3_t;
-    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        v->six_r_J_5_t*six_r_omega_4_in_axes4_z;
-    /* (six_r-W_4) centripetal tensor of link 4 */
-    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-    /* (six_r-omega_5) angular velocity of link 5 */
-    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
-    /* (six_r-W_5) centripetal tensor of link 5 */
-    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
-    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-u_1) centripetal acceleration of the connection point */
-    const real six_r_u_1_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15;
-    const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
-    const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
-    const real six_r_u_1_in_axes5_x = v->axis_x_six_r_axes5_x*six_r_u_1_x +
-        v->axis_x_six_r_axes5_y*six_r_u_1_y + v->axis_x_six_r_axes5_z*six_r_u_1_z;
-    const real six_r_u_1_in_axes5_y = v->axis_y_six_r_axes5_x*six_r_u_1_x +
-        v->axis_y_six_r_axes5_y*six_r_u_1_y + v->axis_y_six_r_axes5_z*six_r_u_1_z;
-    const real six_r_u_1_in_axes5_z = v->axis_z_six_r_axes5_x*six_r_u_1_x +
-        v->axis_z_six_r_axes5_y*six_r_u_1_y + v->axis_z_six_r_axes5_z*six_r_u_1_z;
-    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_13;
-    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
-        v->six_r_c_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
-        v->six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
-        v->six_r_J_5_t*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y -
-        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t;
-    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12;
-    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12;
-    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
-    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_h_4_t;
-    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-    const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-    const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
-    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
-    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_e_4_in_axes5_x;
-    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-        v->six_r_J_5_t*six_r_beta_4_in_axes4_x;
-    const real six_r_beta_4_t_2 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
-        six_r_beta_4_t_2;
-    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-    const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
-    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
-    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-    const real six_r_beta_5_in_axes5_x = six_r_zeta_5_in_axes5_x + six_r_beta_4_in_axes5_x;
-    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
-    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-    const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-    const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-    const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
-    const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
-    const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
-    const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-    const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
-    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
-        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z -
-        v->six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
-        v->six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) +
-        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
-        six_r_W_5_t_3*m->six_r_platform_joint_offset_x[i] -
-        v->six_r_bias_t_16*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
-        v->six_r_bias_t_17*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
-        v->six_r_d_4_in_axes5_x*(six_r_bias_t +
-        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-        v->six_r_d_5_in_axes5_x*(six_r_bias_t + six_r_W_5_t);
-    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z -
-        v->six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
-        v->six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15) +
-        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-        v->six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x)
-        + v->six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) +
-        six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
-        six_r_bias_t_18*m->six_r_platform_joint_offset_x[i] +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_3_in_axes4_y + six_r_W_3_in_axes5_xy);
-    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
-        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y -
-        v->six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
-        v->six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
-        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_e_4_in_axes5_x +
-        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) -
-        v->six_r_bias_t_16*(six_r_beta_4_t + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y
-        - v->six_r_J_5_t*six_r_beta_3_t) +
-        v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
-        six_r_beta_4_in_axes5_y) -
-        v->six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
-        six_r_beta_4_in_axes5_x) + m->six_r_platform_joint_offset_x[i]*(six_r_W_5_in_axes5_xz
-        - six_r_beta_5_in_axes5_y);
-    /* (six_r-rel_o) remainder of: acceleration of the connection point left to the joint
-       accelerations */
-    const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
-    const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
-    const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
-    /* (six_r-nd_m1) rate of moment direction 1 */
-    const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
-        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-    const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
-        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real six_r_nu_1_t = v->six_r_end_p1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_end_p1_in_axes5_y -
-        six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
-    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v->six_r_omega_in_axes5_x;
-    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
-    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
-    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nu_1_t_5*(v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x + six_r_nu_1_t);
-    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-    /* (six_r-nd_m2) rate of moment direction 2 */
-    const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1_2 -
-        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-    const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
-        v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
-        six_r_beta_4_in_axes4_y*v->six_r_end_p1_in_axes5_y;
-    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
-        six_r_nu_1_t_3*(v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z + six_r_nu_1_t);
-    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-    /* (six_r-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real six_r_qdd_1_o_t = six_r_nu_1*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_2 = six_r_nu_2*m->six_r_size[i];
-    const real six_r_qdd_1_o_t_3 = v->inv_six_r_w_1_t_75*(v->six_r_m1_w_1_t*six_r_qdd_1_o_t +
-        v->six_r_m2_w_1_t*six_r_qdd_1_o_t_2 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_76 -
-        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_77 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_78);
-    const real six_r_qdd_1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_qdd_1_o_t*v->six_r_w_1_t_67 +
-        six_r_qdd_1_o_t_2*v->six_r_w_1_t_68 + six_r_rel_o_in_axes5_x*v->six_r_w_1_t_64 -
-        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_65 + six_r_rel_o_in_axes5_z*v->six_r_w_1_t_66 -
-        six_r_qdd_1_o_t_3*v->six_r_w_1_t_69);
-    const real six_r_qdd_1_o_t_5 =
-        v->inv_six_r_w_1_t_45*(six_r_rel_o_in_axes5_y*v->six_r_w_1_t_47 -
-        six_r_qdd_1_o_t*v->six_r_w_1_t_49 - six_r_qdd_1_o_t_2*v->six_r_w_1_t_50 -
-        six_r_rel_o_in_axes5_x*v->six_r_w_1_t_46 - six_r_rel_o_in_axes5_z*v->six_r_w_1_t_48 +
-        six_r_qdd_1_o_t_3*v->six_r_w_1_t_57 + six_r_qdd_1_o_t_4*v->six_r_w_1_t_51);
-    /* (six_r-qdd_4_o) remainder of: acceleration of joint 4 */
-    const real six_r_qdd_4_o = v->inv_six_r_w_1_t_24*(six_r_qdd_1_o_t*v->six_r_w_1_t_27 +
-        six_r_qdd_1_o_t_2*v->six_r_w_1_t_28 - six_r_rel_o_in_axes5_y*v->six_r_w_1_t_25 +
-        six_r_rel_o_in_axes5_z*v->six_r_w_1_t_26 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_40 +
-        six_r_qdd_1_o_t_4*v->six_r_w_1_t_35 - six_r_qdd_1_o_t_5*v->six_r_w_1_t_29);
-    /* (six_r-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real six_r_alpha_1_o_t = v->six_r_c_2*six_r_qdd_1_o_t_5;
-    const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v->six_r_s_2;
-    /* (six_r-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
-    const real six_r_alpha_2_o_in_axes2_y = six_r_zeta_2_in_axes2_y +
-        six_r_alpha_1_o_in_axes2_y;
-    /* (six_r-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real six_r_B_2_o_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_o_t_4;
-    const real six_r_B_2_o_in_axes2_zx = -six_r_zeta_2_in_axes2_y -
-        six_r_alpha_2_o_in_axes2_y;
-    const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
-    /* (six_r-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-        six_r_alpha_2_o_in_axes2_x*v->six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v->six_r_c_3;
-    const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v->six_r_c_3 -
-        six_r_zeta_3_t + six_r_alpha_2_o_in_axes2_y*v->six_r_s_3;
-    const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
-    /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
-    const real six_r_B_3_o_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_o_in_axes3_y;
-    const real six_r_B_3_o_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_o_in_axes3_z;
-    const real six_r_B_3_o_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_o_in_axes3_x;
-    const real six_r_B_3_o_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_o_in_axes3_y;
-    const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
-    /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
-    const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-        six_r_alpha_3_o_in_axes3_z*v->six_r_h_4_t -
-        six_r_alpha_3_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v->six_r_e_2_in_axes5_z
-        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v->six_r_h_4_t;
-    const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
-    /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
-    const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
-    const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
-    const real six_r_B_4_o_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_o_in_axes4_z;
-    const real six_r_B_4_o_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_o_in_axes4_x;
-    const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
-    const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
-    /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
-    const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-        v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-        six_r_alpha_4_o_in_axes4_z*v->six_r_e_4_in_axes5_x;
-    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v->six_r_e_4_in_axes5_x
-        - six_r_zeta_5_t - v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
-    const real six_r_alpha_5_o_in_axes5_z =
-        v->inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*v->six_r_w_1_t_10 +
-        six_r_rel_o_in_axes5_y*v->six_r_w_1_t_9 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_21 -
-        six_r_qdd_1_o_t_4*v->six_r_w_1_t_18 + six_r_qdd_1_o_t_5*v->six_r_w_1_t_14 -
-        six_r_qdd_4_o*v->six_r_w_1_t_11) + six_r_alpha_4_o_in_axes4_y;
-    /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
-    const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
-    const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
-    const real six_r_B_5_o_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_o_in_axes5_z;
-    const real six_r_B_5_o_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_o_in_axes5_x;
-    const real six_r_B_5_o_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_o_in_axes5_y;
-    const real six_r_B_5_o_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_o_in_axes5_x;
-    /* (six_r-a_o_3_o) remainder of: acceleration of the origin of joint 3 */
-    const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-    const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_13*six_r_qd_1_t_13;
-    const real six_r_a_o_3_o_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_o_t_2 +
-        six_r_a_o_3_o_t);
-    const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*m->six_r_joint3_offset_x[i];
-    const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v->six_r_s_3 -
-        six_r_a_o_3_o_in_axes2_y*v->six_r_c_3;
-    const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v->six_r_c_3 +
-        six_r_a_o_3_o_in_axes2_y*v->six_r_s_3;
-    /* (six_r-a_o_4_o) remainder of: acceleration of the origin of joint 4 */
-    const real six_r_a_o_4_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*m->six_r_joint4_offset_x[i]
-        + six_r_a_o_3_o_in_axes3_x;
-    const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
-        six_r_W_3_t_3*m->six_r_joint4_offset_x[i];
-    const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-        six_r_B_3_o_in_axes3_zy*m->six_r_joint4_offset_x[i];
-    /* (six_r-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v->six_r_g_in_axes3_x;
-    const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v->six_r_g_in_axes3_y;
-    const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v->six_r_g_in_axes1_y;
-    /* (six_r-f_3_o) remainder of: inertia force of link 3 less its weight */
-    const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-    const real six_r_f_3_o_in_axes3_x = m->six_r_h_3_in_spec3_y[i]*(six_r_W_3_t_2 +
-        six_r_f_3_o_t) + six_r_B_3_o_in_axes3_xy*m->six_r_h_3_in_spec3_x[i] +
-        six_r_acc_3_o_in_axes3_x*m->six_r_link3_mass[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_o_in_axes3_y = six_r_acc_3_o_in_axes3_y*m->six_r_link3_mass[i] -
-        six_r_W_3_t_3*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yx*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_h_3_in_spec3_z[i];
-    const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*m->six_r_h_3_in_spec3_x[i] -
-        m->six_r_h_3_in_spec3_z[i]*(six_r_W_3_t + six_r_f_3_o_t) +
-        six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
-    /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_x - six_r_a_o_4_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_y + six_r_a_o_4_o_in_axes3_z*v->six_r_e_2_in_axes5_z;
-    const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v->six_r_g_in_axes3_y;
-    /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
-    const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-    const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-    const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*m->six_r_h_4_in_spec4_z[i] -
-        m->six_r_h_4_in_spec4_y[i]*(six_r_bias_t + six_r_f_4_o_t_2) +
-        six_r_B_4_o_in_axes4_xz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_link4_mass[i];
-    const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*m->six_r_h_4_in_spec4_y[i] -
-        m->six_r_h_4_in_spec4_z[i]*(six_r_f_4_o_t + six_r_f_4_o_t_2) +
-        six_r_B_4_o_in_axes4_yz*m->six_r_h_4_in_spec4_x[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_link4_mass[i];
-    const real six_r_f_4_o_in_axes4_z = six_r_acc_4_o_in_axes4_z*m->six_r_link4_mass[i] -
-        m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
-        six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v->six_r_h_4_t -
-        v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
-    const real six_r_f_4_o_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
-        six_r_f_4_o_in_axes4_x*v->six_r_h_4_t;
-    /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
-    const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - v->six_r_g_in_axes5_x;
-    const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - v->six_r_g_in_axes5_y;
-    const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z - v->six_r_g_in_axes5_z;
-    /* (six_r-mu_5_o) remainder of: inertia moment of the links that turn with link 5, about their
-       reference points */
-    const real six_r_mu_5_o_in_axes5_x = six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_y[i] -
-        six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_z[i] +
-        m->six_r_J_5_in_spec5_yz[i]*(six_r_W_5_t - six_r_W_5_t_2) +
-        six_r_B_5_o_in_axes5_yx*m->six_r_J_5_in_spec5_xz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_Sigma_5_in_axes5_yy[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_Sigma_5_in_axes5_zz[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_J_5_in_spec5_xy[i];
-    const real six_r_mu_5_o_in_axes5_y = six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_acc_5_o_in_axes5_z*m->six_r_h_5_in_spec5_x[i] -
-        m->six_r_J_5_in_spec5_xz[i]*(six_r_bias_t_2 - six_r_W_5_t_2) -
-        six_r_B_5_o_in_axes5_xy*m->six_r_J_5_in_spec5_yz[i] +
-        six_r_B_5_o_in_axes5_xz*m->six_r_Sigma_5_in_axes5_zz[i] +
-        six_r_B_5_o_in_axes5_zy*m->six_r_J_5_in_spec5_xy[i] -
-        six_r_B_5_o_in_axes5_zx*m->six_r_Sigma_5_in_axes5_xx[i];
-    const real six_r_mu_5_o_in_axes5_z = six_r_acc_5_o_in_axes5_y*m->six_r_h_5_in_spec5_x[i] -
-        six_r_acc_5_o_in_axes5_x*m->six_r_h_5_in_spec5_y[i] +
-        m->six_r_J_5_in_spec5_xy[i]*(six_r_bias_t_2 - six_r_W_5_t) +
-        six_r_B_5_o_in_axes5_yx*m->six_r_Sigma_5_in_axes5_xx[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_Sigma_5_in_axes5_yy[i] +
-        six_r_B_5_o_in_axes5_xz*m->six_r_J_5_in_spec5_yz[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_J_5_in_spec5_xz[i];
-    /* (six_r-mu_4_o) remainder of: inertia moment of the links that turn with link 4, about their
-       reference points */
-    const real six_r_mu_4_o_in_axes4_x = m->six_r_J_4_in_spec4_xz[i]*(six_r_bias_t -
-        six_r_f_4_o_t_2) + six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_z[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_o_in_axes4_y =
-        six_r_B_4_o_in_axes4_xz*m->six_r_Sigma_4_in_axes4_zz[i] -
-        m->six_r_J_4_in_spec4_xy[i]*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-        six_r_acc_4_o_in_axes4_z*m->six_r_h_4_in_spec4_y[i] +
-        six_r_B_4_o_in_axes4_zy*m->six_r_J_4_in_spec4_yz[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_J_4_in_spec4_xz[i] -
-        six_r_B_4_o_in_axes4_zx*m->six_r_Sigma_4_in_axes4_xx[i] +
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_x[i];
-    const real six_r_mu_4_o_in_axes4_z = m->six_r_J_4_in_spec4_yz[i]*(six_r_f_4_o_t -
-        six_r_bias_t) + six_r_B_4_o_in_axes4_xz*m->six_r_J_4_in_spec4_xz[i] +
-        six_r_B_4_o_in_axes4_yx*m->six_r_Sigma_4_in_axes4_xx[i] -
-        six_r_B_4_o_in_axes4_xy*m->six_r_Sigma_4_in_axes4_yy[i] -
-        six_r_B_4_o_in_axes4_yz*m->six_r_J_4_in_spec4_xy[i] +
-        six_r_acc_4_o_in_axes4_y*m->six_r_h_4_in_spec4_y[i] -
-        six_r_acc_4_o_in_axes4_x*m->six_r_h_4_in_spec4_z[i];
-    /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
-       connection point left out */
-    const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-        v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
-    const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
-    /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
-       reference points */
-    const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
-        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_o_in_axes3_zx*m->six_r_J_3_in_spec3_xy[i] +
-        six_r_B_3_o_in_axes3_zy*m->six_r_Sigma_3_in_axes3_yy[i] +
-        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_x[i] -
-        six_r_B_3_o_in_axes3_yz*m->six_r_Sigma_3_in_axes3_zz[i];
-    const real six_r_mu_3_o_in_axes3_y = m->six_r_J_3_in_spec3_yz[i]*(six_r_W_3_t -
-        six_r_W_3_t_2) - six_r_B_3_o_in_axes3_xy*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_z[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_Sigma_3_in_axes3_zz[i] +
-        six_r_acc_3_o_in_axes3_z*m->six_r_h_3_in_spec3_y[i] -
-        six_r_B_3_o_in_axes3_zx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        six_r_B_3_o_in_axes3_zy*m->six_r_J_3_in_spec3_xy[i];
-    const real six_r_mu_3_o_in_axes3_z =
-        six_r_B_3_o_in_axes3_yx*m->six_r_Sigma_3_in_axes3_xx[i] -
-        m->six_r_J_3_in_spec3_xy[i]*(six_r_W_3_t - six_r_f_3_o_t) -
-        six_r_B_3_o_in_axes3_xy*m->six_r_Sigma_3_in_axes3_yy[i] -
-        six_r_acc_3_o_in_axes3_x*m->six_r_h_3_in_spec3_x[i] -
-        six_r_acc_3_o_in_axes3_y*m->six_r_h_3_in_spec3_y[i] +
-        six_r_B_3_o_in_axes3_xz*m->six_r_J_3_in_spec3_xz[i] +
-        six_r_B_3_o_in_axes3_yz*m->six_r_J_3_in_spec3_yz[i];
-    /* (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the
-       connection point left out */
-    const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
-        six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v->six_r_h_4_t -
-        six_r_N_4_o_in_axes4_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
-    const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
-        six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v->six_r_e_2_in_axes5_z +
-        six_r_N_4_o_in_axes4_x*v->six_r_h_4_t;
-    /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
-       */
-    const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
-    const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
-    const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
-    /* (six_r-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-    const real six_r_mu_2_o_in_axes2_x = m->six_r_J_2_in_spec2_yz[i]*(six_r_a_o_3_o_t -
-        six_r_a_o_3_o_t_2) - v->six_r_mu_2_t +
-        six_r_B_2_o_in_axes2_yx*m->six_r_J_2_in_spec2_xz[i] -
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_t +
-        six_r_B_2_o_in_axes2_zy*m->six_r_Sigma_2_in_axes2_yy[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_J_2_in_spec2_xy[i];
-    const real six_r_mu_2_o_in_axes2_y =
-        m->six_r_Sigma_2_in_axes2_zz[i]*six_r_alpha_1_o_in_axes2_y - v->six_r_mu_2_t_2 -
-        m->six_r_J_2_in_spec2_xz[i]*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-        six_r_B_2_o_in_axes2_xy*m->six_r_J_2_in_spec2_yz[i] +
-        six_r_B_2_o_in_axes2_zy*m->six_r_J_2_in_spec2_xy[i] -
-        six_r_B_2_o_in_axes2_zx*m->six_r_Sigma_2_in_axes2_xx[i];
-    const real six_r_mu_2_o_in_axes2_z = m->six_r_J_2_in_spec2_xy[i]*(six_r_mu_2_o_t -
-        six_r_a_o_3_o_t) - v->six_r_mu_2_t_3 +
-        six_r_B_2_o_in_axes2_yx*m->six_r_Sigma_2_in_axes2_xx[i] -
-        six_r_B_2_o_in_axes2_xy*m->six_r_Sigma_2_in_axes2_yy[i] +
-        m->six_r_J_2_in_spec2_yz[i]*six_r_alpha_1_o_in_axes2_y -
-        m->six_r_J_2_in_spec2_xz[i]*six_r_alpha_1_o_t;
-    /* (six_r-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
-       connection point left out */
-    const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-        six_r_N_3_o_in_axes3_x*v->six_r_s_3 + six_r_N_3_o_in_axes3_y*v->six_r_c_3;
-    const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y -
-        six_r_T_3_o_in_axes3_z*m->six_r_joint3_offset_x[i] +
-        six_r_N_3_o_in_axes3_y*v->six_r_s_3 - six_r_N_3_o_in_axes3_x*v->six_r_c_3;
-    const real six_r_N_2_o_in_axes2_z = six_r_mu_2_o_in_axes2_z -
-        m->six_r_joint3_offset_x[i]*(six_r_T_3_o_in_axes3_x*v->six_r_c_3 -
-        six_r_T_3_o_in_axes3_y*v->six_r_s_3) + six_r_N_3_o_in_axes3_z;
-    /* (six_r-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real six_r_mu_1_o_in_axes1_z = -v->six_r_mu_1_t -
-        m->six_r_J_1_in_spec1_xx[i]*six_r_qdd_1_o_t_5;
-    /* (six_r-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
-       connection point left out */
-    const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-        six_r_N_2_o_in_axes2_x*v->six_r_c_2 - six_r_N_2_o_in_axes2_y*v->six_r_s_2;
-    /* (six_r-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia
-       and weight along all degrees of freedom */
-    const real six_r_G_m1_o_t = v->inv_six_r_w_1_t_8*six_r_mu_5_o_in_axes5_z;
-    const real six_r_G_m1_o_t_2 = v->inv_six_r_w_1_t_24*(six_r_G_m1_o_t*v->six_r_w_1_t_11 -
-        six_r_N_4_o_in_axes4_z);
-    const real six_r_G_m1_o_t_3 = v->inv_six_r_w_1_t_45*(six_r_G_m1_o_t*v->six_r_w_1_t_14 +
-        six_r_G_m1_o_t_2*v->six_r_w_1_t_29 - six_r_N_1_o_in_axes1_z);
-    const real six_r_G_m1_o_t_4 = v->inv_six_r_w_1_t_63*(six_r_G_m1_o_t*v->six_r_w_1_t_18 +
-        six_r_G_m1_o_t_2*v->six_r_w_1_t_35 - six_r_N_2_o_in_axes2_z -
-        six_r_G_m1_o_t_3*v->six_r_w_1_t_51);
-    const real six_r_G_m1_o_t_5 = v->inv_six_r_w_1_t_75*(six_r_G_m1_o_t*v->six_r_w_1_t_21 +
-        six_r_N_3_o_in_axes3_z - six_r_G_m1_o_t_2*v->six_r_w_1_t_40 +
-        six_r_G_m1_o_t_3*v->six_r_w_1_t_57 + six_r_G_m1_o_t_4*v->six_r_w_1_t_69);
-    const real six_r_G_m1_o_t_6 = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_27 +
-        six_r_G_m1_o_t_3*v->six_r_w_1_t_49 + six_r_G_m1_o_t_4*v->six_r_w_1_t_67 -
-        six_r_G_m1_o_t_5*v->six_r_m1_w_1_t);
-    /* (six_r-G_m2_o) remainder of: moment along moment direction 2 that balances the leg's inertia
-       and weight along all degrees of freedom */
-    const real six_r_G_m2_o_t = m->six_r_size[i]*(six_r_G_m1_o_t_2*v->six_r_w_1_t_28 -
-        six_r_G_m1_o_t*v->six_r_w_1_t_10 + six_r_G_m1_o_t_3*v->six_r_w_1_t_50 +
-        six_r_G_m1_o_t_4*v->six_r_w_1_t_68 - six_r_G_m1_o_t_5*v->six_r_m2_w_1_t);
-    /* (six_r-G_m_o) remainder of: moment at the connection point that balances the leg's inertia and
-       weight along all degrees of freedom */
-    const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v->six_r_end_p1_in_axes5_y;
-    const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_z -
-        six_r_G_m1_o_t_6*v->six_r_n_m1_in_axes5_y;
-    /* (six_r-c_o) remainder of: leg force on the platform without actuation and without the mass at
-       the connection point */
-    const real six_r_c_o_in_axes5_x = six_r_W_5_t_3*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_xy*m->six_r_h_5_in_spec5_y[i] -
-        six_r_B_5_o_in_axes5_xz*m->six_r_h_5_in_spec5_z[i] +
-        six_r_G_m1_o_t_3*v->six_r_w_1_t_46 + six_r_G_m1_o_t_4*v->six_r_w_1_t_64 -
-        six_r_G_m1_o_t_5*v->six_r_w_1_t_76;
-    const real six_r_c_o_in_axes5_y = m->six_r_h_5_in_spec5_y[i]*(six_r_W_5_t_2 +
-        six_r_bias_t_2) - six_r_B_5_o_in_axes5_yx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_yz*m->six_r_h_5_in_spec5_z[i] - six_r_G_m1_o_t*v->six_r_w_1_t_9 -
-        six_r_G_m1_o_t_2*v->six_r_w_1_t_25 - six_r_G_m1_o_t_3*v->six_r_w_1_t_47 -
-        six_r_G_m1_o_t_4*v->six_r_w_1_t_65 + six_r_G_m1_o_t_5*v->six_r_w_1_t_77;
-    const real six_r_c_o_in_axes5_z = m->six_r_h_5_in_spec5_z[i]*(six_r_W_5_t +
-        six_r_bias_t_2) - six_r_B_5_o_in_axes5_zx*m->six_r_h_5_in_spec5_x[i] -
-        six_r_B_5_o_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] +
-        six_r_G_m1_o_t_2*v->six_r_w_1_t_26 + six_r_G_m1_o_t_3*v->six_r_w_1_t_48 +
-        six_r_G_m1_o_t_4*v->six_r_w_1_t_66 - six_r_G_m1_o_t_5*v->six_r_w_1_t_78;
-    /* (six_r-c_m_o) remainder of: moment of the leg on the platform without actuation */
-    const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v->six_r_end_p1_in_axes5_y;
-    /* (six_r-U) velocity and gravity terms of the leg force */
-    v->six_r_U_x = -v->axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-        v->axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
-        v->axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-    v->six_r_U_y = -v->axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-        v->axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
-        v->axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-    v->six_r_U_z = -v->axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-        v->axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
-        v->axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
-    /* (Z_a) rotational part of Z */
-    v->six_r_Z_a_t = v->axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-        v->axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + v->six_r_U_z*v->six_r_q_y -
-        v->axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - v->six_r_U_y*v->six_r_q_z;
-    v->six_r_Z_a_t_2 = v->axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-        v->axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + v->six_r_U_x*v->six_r_q_z -
-        v->axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - v->six_r_U_z*v->six_r_q_x;
-    v->six_r_Z_a_t_3 = v->axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-        v->axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + v->six_r_U_y*v->six_r_q_x -
-        v->axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - v->six_r_U_x*v->six_r_q_y;
-}
-
 INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r *v)
 {
     /* (six_r-o_2) moment part of reciprocal wrench 2 */
@@ -4212,8 +4250,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         v->axis_z_six_r_axes5_z*v->six_r_o_2_in_axes5_z -
         v->axis_x_six_r_axes5_z*v->six_r_o_2_t;
     /* (six_r-W_2) centripetal tensor of link 2 */
-    const real six_r_W_2_in_axes2_xy_2 =
-        v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_in_axes2_y_2;
+    const real six_r_W_2_in_axes2_xy_2 = -v->six_r_omega_1_in_axes2_x_2*v->six_r_omega_1_t_4;
     /* (six_r-W_3) centripetal tensor of link 3 */
     const real six_r_W_3_t_4 = v->six_r_omega_2_in_axes3_x_2*v->six_r_omega_2_in_axes3_x_2;
     const real six_r_W_3_t_5 = v->six_r_omega_3_in_axes3_z_2*v->six_r_omega_3_in_axes3_z_2;
@@ -4276,11 +4313,11 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz_2 - six_r_alpha_4_in_axes4_y;
     const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x;
     /* (six_r-alpha_5) angular acceleration of link 5 */
-    const real six_r_alpha_5_in_axes5_x = v->six_r_J_5_t*six_r_alpha_4_in_axes4_x -
-        v->six_r_zeta_5_t_2 + six_r_alpha_4_in_axes4_z*v->six_r_e_4_in_axes5_x;
-    const real six_r_alpha_5_in_axes5_y = v->six_r_zeta_5_in_axes5_y +
-        six_r_alpha_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
-        v->six_r_J_5_t*six_r_alpha_4_in_axes4_z;
+    const real six_r_alpha_5_in_axes5_x = v->six_r_zeta_5_in_axes5_x_2 +
+        v->six_r_J_5_t*six_r_alpha_4_in_axes4_x +
+        six_r_alpha_4_in_axes4_z*v->six_r_e_4_in_axes5_x;
+    const real six_r_alpha_5_in_axes5_y = six_r_alpha_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
+        v->six_r_zeta_5_t_2 - v->six_r_J_5_t*six_r_alpha_4_in_axes4_z;
     const real six_r_alpha_5_in_axes5_z = v->six_r_qdd_5 + six_r_alpha_4_in_axes4_y;
     /* (six_r-B_5) acceleration tensor of link 5 */
     const real six_r_B_5_in_axes5_xy = v->six_r_W_4_in_axes5_xy_2 - six_r_alpha_5_in_axes5_z;
@@ -4290,7 +4327,7 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_B_5_in_axes5_zx = v->six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y;
     const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x;
     /* (six_r-a_o_3) acceleration of the origin of joint 3 */
-    const real six_r_a_o_3_t = v->six_r_omega_1_in_axes2_y_2*v->six_r_omega_1_in_axes2_y_2;
+    const real six_r_a_o_3_t = v->six_r_omega_1_t_4*v->six_r_omega_1_t_4;
     const real six_r_a_o_3_t_2 = v->six_r_qd_1_t_18*v->six_r_qd_1_t_18;
     const real six_r_a_o_3_in_axes2_x = -m->six_r_joint3_offset_x[i]*(six_r_a_o_3_t_2 +
         six_r_a_o_3_t);
@@ -4569,6 +4606,72 @@ INLINE void any_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t coun
     t->total[k] += o[7*count + at];
 }
 
+INLINE void any_sums_six_r(size_t k, size_t count, int add, const values_six_r *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->six_r_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->six_r_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->six_r_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->six_r_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->six_r_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->six_r_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->six_r_M_ta_t_13);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v->six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v->six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v->six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v->six_r_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v->six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v->six_r_M_ta_t_21);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v->six_r_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v->six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v->six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v->six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v->six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v->six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_six_r_2(size_t k, size_t count, int add, const values_six_r *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->six_r_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->six_r_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->six_r_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->six_r_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->six_r_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->six_r_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_six_r(size_t k, size_t count, const values_six_r *v, real *o)
+{
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    o[0*count + k] = v->six_r_w_2_x;
+    o[1*count + k] = v->six_r_w_2_y;
+    o[2*count + k] = v->six_r_w_2_z;
+}
+
+INLINE void any_entries_six_r_2(size_t k, size_t count, const values_six_r *v, real *o)
+{
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    o[0*count + k] = v->six_r_H_a_2_x;
+    o[1*count + k] = v->six_r_H_a_2_y;
+    o[2*count + k] = v->six_r_H_a_2_z;
+}
+
+INLINE void any_singular_six_r(const prepared *m, size_t i, size_t k, const values_six_r *v, real
+    *o)
+{
+    o[k] = UNLESS(magnitude(v->six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v->six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v->six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v->six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
+        UNLESS(magnitude(v->six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+}
+
 INLINE void any_place_six_r_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -4735,6 +4838,7 @@ INLINE void closure_six_r_run(const prepared *m, const real *X, const real *join
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        IN_VECTORS(BESIDE(LEGS_OF_six_r))
         for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
             closure_six_r_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), s, X, joints,
                 o_six_r);
@@ -4826,68 +4930,28 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     stage_six_r_V_q(w, j, V, &v);
     stage_six_r_X_q(m, i, &v);
     stage_six_r_V_X_q(m, i, &v);
-    stage_six_r_M_dynamics(m, i, &v);
     stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.six_r_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.six_r_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.six_r_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.six_r_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.six_r_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.six_r_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.six_r_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.six_r_M_ta_t_21);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.six_r_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.six_r_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.six_r_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.six_r_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.six_r_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    o[0*count + k] = v.six_r_w_2_x;
-    o[1*count + k] = v.six_r_w_2_y;
-    o[2*count + k] = v.six_r_w_2_z;
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.six_r_H_a_2_x;
-    o[4*count + k] = v.six_r_H_a_2_y;
-    o[5*count + k] = v.six_r_H_a_2_z;
+    stage_six_r_M_dynamics(m, i, &v);
+    any_sums_six_r(k, count, add, &v, terms);
+    any_sums_six_r_2(k, count, add, &v, terms + 21*count);
+    any_entries_six_r(k, count, &v, o);
+    any_entries_six_r_2(k, count, &v, o + 3*count);
+    any_singular_six_r(m, i, k, &v, o + 6*count);
     o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
         (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
-    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -4903,7 +4967,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -4922,7 +4986,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -4932,7 +4996,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -5008,6 +5072,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
     real terms_six_r[27*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         dynamics_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
@@ -5024,8 +5089,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real *joints,
     real *restrict M, real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
-    real o_six_r[8*LANES];
+    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real o_six_r[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -5033,13 +5099,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -5054,48 +5123,21 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
     stage_six_r_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.six_r_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.six_r_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.six_r_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.six_r_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.six_r_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.six_r_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.six_r_M_ta_t_13);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.six_r_M_ta_t_17);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.six_r_M_ta_t_21);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.six_r_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.six_r_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.six_r_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.six_r_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.six_r_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.six_r_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+    any_sums_six_r(k, count, add, &v, terms);
+    any_singular_six_r(m, i, k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -5111,7 +5153,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -5187,6 +5229,7 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
     real terms_six_r[21*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         M_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
     }
@@ -5202,21 +5245,25 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
 INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
     status_flags *restrict t)
 {
-    real s[27*LANES], sums[21*LANES];
-    real o_six_r[LANES];
+    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real o_six_r[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_six_r(m, LANES, i, k, k, LANES, 1, s, joints, sums, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_six_r_2(k, k, LANES, o_six_r, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -5245,24 +5292,13 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_six_r_X_q(m, i, &v);
     stage_six_r_V_X_q(m, i, &v);
     stage_six_r_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.six_r_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.six_r_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.six_r_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.six_r_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.six_r_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+    any_sums_six_r_2(k, count, add, &v, terms);
+    any_singular_six_r(m, i, k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -5272,7 +5308,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -5300,6 +5336,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
     real terms_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         Z_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, V, joints, terms_six_r, o_six_r);
     }
@@ -5316,8 +5353,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
     *restrict Z, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_six_r[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_six_r[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -5325,13 +5363,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, joints, sums, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_six_r_2(k, k, LANES, o_six_r, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -5345,21 +5386,11 @@ INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    o[0*count + k] = v.six_r_w_2_x;
-    o[1*count + k] = v.six_r_w_2_y;
-    o[2*count + k] = v.six_r_w_2_z;
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.six_r_H_a_2_x;
-    o[4*count + k] = v.six_r_H_a_2_y;
-    o[5*count + k] = v.six_r_H_a_2_z;
+    any_entries_six_r(k, count, &v, o);
+    any_entries_six_r_2(k, count, &v, o + 3*count);
+    any_singular_six_r(m, i, k, &v, o + 6*count);
     o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
         (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
-    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 APART void H_run(const prepared *m, const real *X, const real *joints, real *H, status_flags *t)
@@ -5368,6 +5399,7 @@ APART void H_run(const prepared *m, const real *X, const real *joints, real *H, 
     real o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         H_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, joints, o_six_r);
     }
@@ -5379,16 +5411,19 @@ APART void H_run(const prepared *m, const real *X, const real *joints, real *H, 
 INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict H,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_six_r[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_six_r[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_six_r(m, LANES, i, k, k, LANES, s, joints, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
         }
@@ -5488,7 +5523,7 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_c_z = v.axis_x_six_r_axes5_z*v.six_r_c_in_axes5_x +
         v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
         v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real six_r_R_a_t = six_r_c_y*v.six_r_q_z - six_r_c_z*v.six_r_q_y - v.six_r_c_m_x;
     const real six_r_R_a_t_2 = six_r_c_z*v.six_r_q_x - six_r_c_x*v.six_r_q_z - v.six_r_c_m_y;
     const real six_r_R_a_t_3 = six_r_c_x*v.six_r_q_y - six_r_c_y*v.six_r_q_x - v.six_r_c_m_z;
@@ -5496,7 +5531,7 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     const real six_r_H_a_2_x_2 = v.six_r_H_a_2_t + v.six_r_o_2_x_2;
     const real six_r_H_a_2_y_2 = v.six_r_H_a_2_t_2 + v.six_r_o_2_y_2;
     const real six_r_H_a_2_z_2 = v.six_r_H_a_2_t_3 + v.six_r_o_2_z_2;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, six_r_c_z);  /* R_t_z_of_legs */
@@ -5504,19 +5539,12 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t i, size_t j,
     gather(&terms[3*count + k], add, six_r_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, six_r_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, six_r_R_a_t_3);  /* R_a_z_of_legs */
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    o[0*count + k] = v.six_r_w_2_x;
-    o[1*count + k] = v.six_r_w_2_y;
-    o[2*count + k] = v.six_r_w_2_z;
+    any_entries_six_r(k, count, &v, o);
     /* (six_r-H_a_2) */
     o[3*count + k] = six_r_H_a_2_x_2;
     o[4*count + k] = six_r_H_a_2_y_2;
     o[5*count + k] = six_r_H_a_2_z_2;
-    o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+    any_singular_six_r(m, i, k, &v, o + 6*count);
 }
 
 INLINE void required_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -5533,7 +5561,7 @@ INLINE void required_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -5543,7 +5571,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -5571,6 +5599,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        IN_VECTORS(BESIDE(LEGS_OF_six_r))
         for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
             required_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), 0, s, V, A, joints,
                 terms_six_r, o_six_r);
@@ -5589,8 +5618,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_six_r[7*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_six_r[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -5598,13 +5628,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_six_r(m, LANES, i, k, k, LANES, 1, s, V, A, joints, sums, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_six_r(LANES, i, k, k, LANES, o_six_r, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -5647,6 +5680,7 @@ INLINE void inverse_kinematics_place_six_r(size_t w, size_t i, size_t k, size_t 
 APART void inverse_kinematics_run(const real *joints, real *q, status_flags *t)
 {
     real o_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         inverse_kinematics_legs_six_r(1, k, 0, k, LEGS(LEGS_OF_six_r), joints, o_six_r);
     }
@@ -5658,11 +5692,13 @@ APART void inverse_kinematics_run(const real *joints, real *q, status_flags *t)
 INLINE void inverse_kinematics_run_lanes(const real *joints, real *restrict q, status_flags
     *restrict t)
 {
-    real o_six_r[6*LANES];
+    ALIGNED real o_six_r[6*LANES];
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_six_r(LANES, i, k, k, LANES, joints, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_six_r(LANES, i, k, k, LANES, o_six_r, q, t);
         }
@@ -5683,20 +5719,16 @@ INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t i, size_t
     /* (six_r-qd_1) rate of joint 1 */
     o[0*count + k] = v.six_r_qd_1;
     /* (six_r-qd_2) rate of joint 2 */
-    o[1*count + k] = v.six_r_qd_1_t_18;
+    o[1*count + k] = -v.six_r_qd_1_t_18;
     /* (six_r-qd_3) rate of joint 3 */
     o[2*count + k] = -v.six_r_qd_1_t_17;
     /* (six_r-qd_4) rate of joint 4 */
-    o[3*count + k] = -v.six_r_qd_4_t_3;
+    o[3*count + k] = v.six_r_qd_4_2;
     /* (six_r-qd_5) rate of joint 5 */
-    o[4*count + k] = -v.six_r_qd_5_t_2;
-    o[6*count + k] = (v.six_r_qd_1 + v.six_r_qd_1_t_18) + (v.six_r_qd_1_t_17 +
-        (v.six_r_qd_4_t_3 + v.six_r_qd_5_t_2));
-    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+    o[4*count + k] = v.six_r_qd_5_2;
+    any_singular_six_r(m, i, k, &v, o + 5*count);
+    o[6*count + k] = (v.six_r_qd_1 + v.six_r_qd_1_t_18) + (v.six_r_qd_1_t_17 + (v.six_r_qd_4_2
+        + v.six_r_qd_5_2));
 }
 
 INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -5718,6 +5750,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, cons
     real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_rates_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, joints, o_six_r);
     }
@@ -5729,16 +5762,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, cons
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, const real
     *joints, real *restrict qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_six_r[7*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_six_r[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_six_r(m, LANES, i, k, k, LANES, s, V, joints, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_six_r(LANES, i, k, k, LANES, o_six_r, qd, t);
         }
@@ -5770,13 +5806,9 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t i
     o[3*count + k] = v.six_r_qdd_4;
     /* (six_r-qdd_5) acceleration of joint 5 */
     o[4*count + k] = v.six_r_qdd_5;
+    any_singular_six_r(m, i, k, &v, o + 5*count);
     o[6*count + k] = (v.six_r_qdd_1_t_5 + v.six_r_qdd_1_t_4) + (v.six_r_qdd_1_t_3 +
         (v.six_r_qdd_4 + v.six_r_qdd_5));
-    o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -5798,6 +5830,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         joint_accelerations_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
     }
@@ -5809,16 +5842,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, const real *joints, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_six_r[7*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_six_r[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_six_r(m, LANES, i, k, k, LANES, s, V, A, joints, o_six_r);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_six_r(LANES, i, k, k, LANES, o_six_r, qdd, t);
         }
@@ -5873,11 +5909,7 @@ INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, siz
     o[9*count + k] = v.six_r_o_2_x_2;
     o[10*count + k] = v.six_r_o_2_y_2;
     o[11*count + k] = v.six_r_o_2_z_2;
-    o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
+    any_singular_six_r(m, i, k, &v, o + 12*count);
 }
 
 INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -5906,6 +5938,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        IN_VECTORS(BESIDE(LEGS_OF_six_r))
         for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
             legs_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), s, V, A, joints, o_six_r);
         }
@@ -6004,6 +6037,7 @@ INLINE void potential_run(const prepared *m, const real *X, const real *joints, 
     values v;
     potential_before(m, 1, 0, X, &v, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
+        IN_VECTORS(BESIDE(LEGS_OF_six_r))
         for (size_t k = 0; k < BESIDE(LEGS_OF_six_r); ++k) {
             potential_legs_six_r(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_six_r), 0, joints,
                 terms_six_r);
@@ -6043,7 +6077,7 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     stage_six_r_X(m, w, i, j, s, &v);
     stage_six_r_q(m, w, i, j, joints, &v);
     stage_six_r_X_q(m, i, &v);
-    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    /* (six_r-w_5) force part of reciprocal wrench 5 */
     const real six_r_pivot_size = magnitude(v.six_r_w_1_t_8);
     const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_24);
     const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_45);
@@ -6053,7 +6087,7 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
         lesser(lesser(lesser(lesser(m->inv_six_r_size[i]*six_r_pivot_size,
         m->inv_six_r_size[i]*six_r_pivot_size_2), m->inv_six_r_size[i]*six_r_pivot_size_3),
         m->inv_six_r_size[i]*six_r_pivot_size_4), m->inv_six_r_size[i]*six_r_pivot_size_5);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real six_r_spread_t = m->b_c_in_platform_x - m->six_r_platform_point_x[i];
     const real six_r_spread_t_2 = m->b_c_in_platform_y - m->six_r_platform_point_y[i];
     const real six_r_spread_t_3 = m->b_c_in_platform_z - m->six_r_platform_point_z[i];
@@ -6061,23 +6095,13 @@ INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
         six_r_spread_t_2*six_r_spread_t_2 + six_r_spread_t_3*six_r_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, six_r_spread_t_4);  /* spread_six_r */
-    /* (six_r-w_2) force part of reciprocal wrench 2 */
-    o[0*count + k] = v.six_r_w_2_x;
-    o[1*count + k] = v.six_r_w_2_y;
-    o[2*count + k] = v.six_r_w_2_z;
-    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.six_r_H_a_2_x;
-    o[4*count + k] = v.six_r_H_a_2_y;
-    o[5*count + k] = v.six_r_H_a_2_z;
-    /* (six_r-w_1) */
+    any_entries_six_r(k, count, &v, o);
+    any_entries_six_r_2(k, count, &v, o + 3*count);
+    /* (six_r-w_5) */
     o[6*count + k] = six_r_least_pivots;
+    any_singular_six_r(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + ((v.six_r_H_a_2_x +
         v.six_r_H_a_2_y) + (v.six_r_H_a_2_z + six_r_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_8) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_24) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_45) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_63) > TOLERANCE*m->six_r_size[i]) +
-        UNLESS(magnitude(v.six_r_w_1_t_75) > TOLERANCE*m->six_r_size[i]);
 }
 
 INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -6097,7 +6121,7 @@ INLINE void condition_place_six_r(size_t w, size_t i, size_t k, size_t at, size_
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_six_r = sums[0*w + k];
     const real spread_ = root(spread_six_r)*m->spread_t;
     /* (spread) */
@@ -6113,6 +6137,7 @@ APART void condition_run(const prepared *m, const real *X, const real *joints, r
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_six_r))
     for (size_t k = 0; k < LEGS(LEGS_OF_six_r); ++k) {
         condition_legs_six_r(m, 1, k, 0, k, LEGS(LEGS_OF_six_r), 0, s, joints, terms_six_r, o_six_r);
     }
@@ -6144,8 +6169,8 @@ int hexapod_6x6r_M(const prepared *m, const real *X, const real *q0, real *M_out
 
 INLINE void M_lanes(const prepared *m, const real *X, const real *q0, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], joints[NJ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], joints[NJ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
@@ -6172,8 +6197,8 @@ int hexapod_6x6r_Z(const prepared *m, const real *X, const real *q0, const real 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *q0, const real *V, real *Z_out,
     int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6200,8 +6225,8 @@ int hexapod_6x6r_H(const prepared *m, const real *X, const real *q0, real *H_out
 
 INLINE void H_lanes(const prepared *m, const real *X, const real *q0, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], joints[NJ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], joints[NJ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
@@ -6228,8 +6253,8 @@ int hexapod_6x6r_inverse_kinematics(const prepared *m, const real *X, const real
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, const real *q0, real
     *q_out, int *code)
 {
-    real X_in[NQ*LANES], joints[NJ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], joints[NJ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
@@ -6257,8 +6282,8 @@ int hexapod_6x6r_joint_rates(const prepared *m, const real *X, const real *q0, c
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *q0, const real *V,
     real *qd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6287,8 +6312,8 @@ int hexapod_6x6r_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], joints[NJ*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], joints[NJ*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6324,9 +6349,9 @@ int hexapod_6x6r_dynamics(const prepared *m, const real *X, const real *q0, cons
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, const real *V, real
     *M_out, real *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], M[NV*NV*LANES], Z[NV*LANES],
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], joints[NJ*LANES], M[NV*NV*LANES], Z[NV*LANES],
         H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6341,6 +6366,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *q0, con
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -6541,9 +6567,9 @@ int hexapod_6x6r_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *A, const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
-        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        joints[NJ*LANES], required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6551,6 +6577,7 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     close_loops(m, LANES, X, q0, joints, &why);
     required_run_lanes(m, X, V, A, joints, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -6596,10 +6623,10 @@ int hexapod_6x6r_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *q0, const real
     *V, const real *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], joints[NJ*LANES],
-        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
-        subtract_1[NV*LANES], A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        joints[NJ*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        add_1[NV*LANES], subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6608,9 +6635,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     close_loops(m, LANES, X, q0, joints, &why);
     dynamics_run_lanes(m, X, V, joints, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

@@ -913,7 +913,7 @@ def _prepare(p):
     six_r_J_5_in_spec5_zz = (
     six_r_link5_inertia_zz - six_r_link5_mass*(six_r_J_5_t_3 - six_r_J_5_t_4)
     )
-    # (six_r-w_1) force part of reciprocal wrench 1
+    # (six_r-w_5) force part of reciprocal wrench 5
     inv_six_r_size = 1.0/six_r_size
     # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
     six_r_acc_3_t = (
@@ -8680,32 +8680,32 @@ def _run_required(m, X, V, A, q):
             six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
         six_r_qd_1_t_18 = (
-        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
             six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
         inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
-            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
-            six_r_qd_1_t_18*six_r_w_1_t_51)
+            six_r_qd_1_t_17*six_r_w_1_t_57 + six_r_qd_1_t_18*six_r_w_1_t_51 - six_r_qd_1_t_4 -
+            six_r_qd_1_t_16*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
         six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
-        six_r_qd_4_t_3 = (
-        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
-            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
-            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
+        six_r_qd_4_2 = (
+        -inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 + six_r_qd_1_t_18*six_r_w_1_t_35 - six_r_qd_4_t_2 -
+            six_r_qd_1*six_r_w_1_t_29 - six_r_qd_1_t_15*six_r_w_1_t_27)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
-        six_r_qd_5_t_2 = (
-        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
-            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
-            six_r_qd_4_t_3*six_r_w_1_t_11)
+        six_r_qd_5_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_18*six_r_w_1_t_18 -
+            six_r_qd_1*six_r_w_1_t_14 - six_r_qd_1_t_16*six_r_w_1_t_10 -
+            six_r_qd_1_t_17*six_r_w_1_t_21 - six_r_qd_4_2*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
         six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_t_4 = six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -8715,28 +8715,28 @@ def _run_required(m, X, V, A, q):
         six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x_2 = (
-        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
+        six_r_c_3*six_r_omega_1_t_4 + six_r_omega_1_in_axes2_x_2*six_r_s_3
         )
         six_r_omega_2_in_axes3_y_2 = (
-        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 - six_r_omega_1_t_4*six_r_s_3
         )
         six_r_omega_2_in_axes5_x_2 = (
-        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_x - six_r_e_2_in_axes5_x*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_y_2 = (
-        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
         )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
-        six_r_W_2_in_axes2_xy_2 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_y_2
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
+        six_r_W_2_in_axes2_xy_2 = -six_r_omega_1_in_axes2_x_2*six_r_omega_1_t_4
         six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
         six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
         six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
         six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
@@ -8758,7 +8758,7 @@ def _run_required(m, X, V, A, q):
         six_r_W_3_in_axes3_yz_2 = six_r_omega_2_in_axes3_y_2*six_r_omega_3_in_axes3_z_2
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
         six_r_omega_4_in_axes5_x_2 = (
         six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
         )
@@ -8769,7 +8769,7 @@ def _run_required(m, X, V, A, q):
         six_r_W_4_in_axes4_yz_2 = six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes4_z_2
         six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 + six_r_qd_5_2
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
         six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
@@ -8793,7 +8793,7 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_ddot_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes2_y_2 = six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
         six_r_zeta_2_in_axes3_x_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
@@ -8817,8 +8817,8 @@ def _run_required(m, X, V, A, q):
         six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
         six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
-        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
+        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
@@ -8829,11 +8829,11 @@ def _run_required(m, X, V, A, q):
         six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
         )
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
-        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
-        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
-        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 + six_r_zeta_5_in_axes5_x_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 - six_r_zeta_5_t_2
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
@@ -9043,11 +9043,11 @@ def _run_required(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_J_5_t*six_r_alpha_4_in_axes4_x + six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x -
-            six_r_zeta_5_t_2
+        six_r_zeta_5_in_axes5_x_2 + six_r_J_5_t*six_r_alpha_4_in_axes4_x +
+            six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x -
+        six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t_2 -
             six_r_J_5_t*six_r_alpha_4_in_axes4_z
         )
         six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
@@ -9059,7 +9059,7 @@ def _run_required(m, X, V, A, q):
         six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y
         six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x
         # (six_r-a_o_3) acceleration of the origin of joint 3
-        six_r_a_o_3_t = six_r_omega_1_in_axes2_y_2*six_r_omega_1_in_axes2_y_2
+        six_r_a_o_3_t = six_r_omega_1_t_4*six_r_omega_1_t_4
         six_r_a_o_3_t_2 = six_r_qd_1_t_18*six_r_qd_1_t_18
         six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
@@ -9922,28 +9922,28 @@ def _run_joint_rates(m, X, V, q):
             six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
         six_r_qd_1_t_18 = (
-        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
             six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
         inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
-            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
-            six_r_qd_1_t_18*six_r_w_1_t_51)
+            six_r_qd_1_t_17*six_r_w_1_t_57 + six_r_qd_1_t_18*six_r_w_1_t_51 - six_r_qd_1_t_4 -
+            six_r_qd_1_t_16*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
         six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
-        six_r_qd_4_t_3 = (
-        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
-            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
-            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
+        six_r_qd_4_2 = (
+        -inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 + six_r_qd_1_t_18*six_r_w_1_t_35 - six_r_qd_4_t_2 -
+            six_r_qd_1*six_r_w_1_t_29 - six_r_qd_1_t_15*six_r_w_1_t_27)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
-        six_r_qd_5_t_2 = (
-        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
-            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
-            six_r_qd_4_t_3*six_r_w_1_t_11)
+        six_r_qd_5_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_18*six_r_w_1_t_18 -
+            six_r_qd_1*six_r_w_1_t_14 - six_r_qd_1_t_16*six_r_w_1_t_10 -
+            six_r_qd_1_t_17*six_r_w_1_t_21 - six_r_qd_4_2*six_r_w_1_t_11)
         )
         ok = (
         ok & (abs(six_r_w_1_t_8) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_24) > _TOLERANCE *
@@ -9953,13 +9953,13 @@ def _run_joint_rates(m, X, V, q):
         # (six_r-qd_1) rate of joint 1
         out_qd[_qd_six_r[0][leg]] = six_r_qd_1
         # (six_r-qd_2) rate of joint 2
-        out_qd[_qd_six_r[1][leg]] = six_r_qd_1_t_18
+        out_qd[_qd_six_r[1][leg]] = -six_r_qd_1_t_18
         # (six_r-qd_3) rate of joint 3
         out_qd[_qd_six_r[2][leg]] = -six_r_qd_1_t_17
         # (six_r-qd_4) rate of joint 4
-        out_qd[_qd_six_r[3][leg]] = -six_r_qd_4_t_3
+        out_qd[_qd_six_r[3][leg]] = six_r_qd_4_2
         # (six_r-qd_5) rate of joint 5
-        out_qd[_qd_six_r[4][leg]] = -six_r_qd_5_t_2
+        out_qd[_qd_six_r[4][leg]] = six_r_qd_5_2
     return ok, (out_qd,)
 
 
@@ -10454,32 +10454,32 @@ def _run_joint_accelerations(m, X, V, A, q):
             six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
         six_r_qd_1_t_18 = (
-        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
             six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
         inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
-            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
-            six_r_qd_1_t_18*six_r_w_1_t_51)
+            six_r_qd_1_t_17*six_r_w_1_t_57 + six_r_qd_1_t_18*six_r_w_1_t_51 - six_r_qd_1_t_4 -
+            six_r_qd_1_t_16*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
         six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
-        six_r_qd_4_t_3 = (
-        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
-            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
-            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
+        six_r_qd_4_2 = (
+        -inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 + six_r_qd_1_t_18*six_r_w_1_t_35 - six_r_qd_4_t_2 -
+            six_r_qd_1*six_r_w_1_t_29 - six_r_qd_1_t_15*six_r_w_1_t_27)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
-        six_r_qd_5_t_2 = (
-        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
-            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
-            six_r_qd_4_t_3*six_r_w_1_t_11)
+        six_r_qd_5_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_18*six_r_w_1_t_18 -
+            six_r_qd_1*six_r_w_1_t_14 - six_r_qd_1_t_16*six_r_w_1_t_10 -
+            six_r_qd_1_t_17*six_r_w_1_t_21 - six_r_qd_4_2*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
         six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_t_4 = six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -10489,27 +10489,27 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x_2 = (
-        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
+        six_r_c_3*six_r_omega_1_t_4 + six_r_omega_1_in_axes2_x_2*six_r_s_3
         )
         six_r_omega_2_in_axes3_y_2 = (
-        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 - six_r_omega_1_t_4*six_r_s_3
         )
         six_r_omega_2_in_axes5_x_2 = (
-        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_x - six_r_e_2_in_axes5_x*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_y_2 = (
-        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
         )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
         six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
         six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
         six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
         six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
@@ -10525,7 +10525,7 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
         six_r_omega_4_in_axes5_x_2 = (
         six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
         )
@@ -10533,7 +10533,7 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 + six_r_qd_5_2
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
         six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
@@ -10556,7 +10556,7 @@ def _run_joint_accelerations(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_ddot_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes2_y_2 = six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
         six_r_zeta_2_in_axes3_x_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
@@ -10580,8 +10580,8 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
         six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
-        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
+        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
@@ -10592,11 +10592,11 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
         )
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
-        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
-        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
-        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 + six_r_zeta_5_in_axes5_x_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 - six_r_zeta_5_t_2
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
@@ -11324,32 +11324,32 @@ def _run_legs(m, X, V, A, q):
             six_r_qd_1_t_9 - six_r_m1_w_1_t*six_r_qd_1_t_15)
         )
         six_r_qd_1_t_18 = (
-        -inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
+        inv_six_r_w_1_t_63*(six_r_qd_1_t_7 + six_r_qd_1_t_16*six_r_w_1_t_68 - six_r_qd_1_t_6 -
             six_r_qd_1_t_8 - six_r_qd_1_t_15*six_r_w_1_t_67 - six_r_qd_1_t_17*six_r_w_1_t_69)
         )
         six_r_qd_1 = (
         inv_six_r_w_1_t_45*(six_r_qd_1_t_3 + six_r_qd_1_t_5 + six_r_qd_1_t_15*six_r_w_1_t_49 +
-            six_r_qd_1_t_17*six_r_w_1_t_57 - six_r_qd_1_t_4 - six_r_qd_1_t_16*six_r_w_1_t_50 -
-            six_r_qd_1_t_18*six_r_w_1_t_51)
+            six_r_qd_1_t_17*six_r_w_1_t_57 + six_r_qd_1_t_18*six_r_w_1_t_51 - six_r_qd_1_t_4 -
+            six_r_qd_1_t_16*six_r_w_1_t_50)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_25
         six_r_qd_4_t_2 = six_r_S_dot_in_axes5_z*six_r_w_1_t_26
-        six_r_qd_4_t_3 = (
-        inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
-            six_r_qd_1_t_17*six_r_w_1_t_40 - six_r_qd_4_t_2 - six_r_qd_1*six_r_w_1_t_29 -
-            six_r_qd_1_t_15*six_r_w_1_t_27 - six_r_qd_1_t_18*six_r_w_1_t_35)
+        six_r_qd_4_2 = (
+        -inv_six_r_w_1_t_24*(six_r_qd_4_t + six_r_qd_1_t_16*six_r_w_1_t_28 +
+            six_r_qd_1_t_17*six_r_w_1_t_40 + six_r_qd_1_t_18*six_r_w_1_t_35 - six_r_qd_4_t_2 -
+            six_r_qd_1*six_r_w_1_t_29 - six_r_qd_1_t_15*six_r_w_1_t_27)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = six_r_S_dot_in_axes5_y*six_r_w_1_t_9
-        six_r_qd_5_t_2 = (
-        inv_six_r_w_1_t_8*(six_r_qd_1*six_r_w_1_t_14 + six_r_qd_1_t_16*six_r_w_1_t_10 +
-            six_r_qd_1_t_17*six_r_w_1_t_21 + six_r_qd_1_t_18*six_r_w_1_t_18 - six_r_qd_5_t -
-            six_r_qd_4_t_3*six_r_w_1_t_11)
+        six_r_qd_5_2 = (
+        inv_six_r_w_1_t_8*(six_r_qd_5_t + six_r_qd_1_t_18*six_r_w_1_t_18 -
+            six_r_qd_1*six_r_w_1_t_14 - six_r_qd_1_t_16*six_r_w_1_t_10 -
+            six_r_qd_1_t_17*six_r_w_1_t_21 - six_r_qd_4_2*six_r_w_1_t_11)
         )
         # (six_r-omega_1) angular velocity of link 1
         six_r_omega_1_in_axes2_x_2 = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes2_y_2 = -six_r_qd_1*six_r_s_2
+        six_r_omega_1_t_4 = six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -11359,28 +11359,28 @@ def _run_legs(m, X, V, A, q):
         six_r_W_1_in_axes5_yz_2 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x_2 = (
-        six_r_omega_1_in_axes2_x_2*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y_2
+        six_r_c_3*six_r_omega_1_t_4 + six_r_omega_1_in_axes2_x_2*six_r_s_3
         )
         six_r_omega_2_in_axes3_y_2 = (
-        six_r_c_3*six_r_omega_1_in_axes2_x_2 + six_r_omega_1_in_axes2_y_2*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x_2 - six_r_omega_1_t_4*six_r_s_3
         )
         six_r_omega_2_in_axes5_x_2 = (
-        six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_x - six_r_e_2_in_axes5_x*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_y_2 = (
-        six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
         six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_18
+        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
         )
         # (six_r-W_2) centripetal tensor of link 2
-        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_in_axes2_y_2*six_r_qd_1_t_18
-        six_r_W_2_in_axes2_xy_2 = six_r_omega_1_in_axes2_x_2*six_r_omega_1_in_axes2_y_2
+        six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
+        six_r_W_2_in_axes2_xy_2 = -six_r_omega_1_in_axes2_x_2*six_r_omega_1_t_4
         six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
         six_r_W_2_in_axes5_xz_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_z_2
         six_r_W_2_in_axes5_yz_2 = six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2
         # (six_r-omega_3) angular velocity of link 3
-        six_r_omega_3_in_axes3_z_2 = six_r_qd_1_t_18 - six_r_qd_1_t_17
+        six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
         six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
         )
@@ -11402,7 +11402,7 @@ def _run_legs(m, X, V, A, q):
         six_r_W_3_in_axes3_yz_2 = six_r_omega_2_in_axes3_y_2*six_r_omega_3_in_axes3_z_2
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 - six_r_qd_4_t_3
+        six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
         six_r_omega_4_in_axes5_x_2 = (
         six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
         )
@@ -11413,7 +11413,7 @@ def _run_legs(m, X, V, A, q):
         six_r_W_4_in_axes4_yz_2 = six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes4_z_2
         six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 - six_r_qd_5_t_2
+        six_r_omega_5_in_axes5_z_2 = six_r_omega_3_in_axes4_y_2 + six_r_qd_5_2
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t_4 = six_r_omega_4_in_axes5_y_2*six_r_omega_4_in_axes5_y_2
         six_r_W_5_t_5 = six_r_omega_5_in_axes5_z_2*six_r_omega_5_in_axes5_z_2
@@ -11437,7 +11437,7 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_ddot_z
         )
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        six_r_zeta_2_in_axes2_y_2 = -six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
+        six_r_zeta_2_in_axes2_y_2 = six_r_omega_1_in_axes2_x_2*six_r_qd_1_t_18
         six_r_zeta_2_in_axes3_x_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y_2
         )
@@ -11461,8 +11461,8 @@ def _run_legs(m, X, V, A, q):
         six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
         six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x_2 = -six_r_omega_3_in_axes4_y_2*six_r_qd_4_t_3
-        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x_2*six_r_qd_4_t_3
+        six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
+        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
@@ -11473,11 +11473,11 @@ def _run_legs(m, X, V, A, q):
         six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
         )
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
-        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_t_2
-        six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x_2*six_r_qd_5_t_2
+        six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
+        six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
-        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 - six_r_zeta_5_t_2
-        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 + six_r_zeta_5_in_axes5_y
+        six_r_beta_5_in_axes5_x_2 = six_r_beta_4_in_axes5_x_2 + six_r_zeta_5_in_axes5_x_2
+        six_r_beta_5_in_axes5_y_2 = six_r_beta_4_in_axes5_y_2 - six_r_zeta_5_t_2
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
@@ -11687,11 +11687,11 @@ def _run_legs(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_J_5_t*six_r_alpha_4_in_axes4_x + six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x -
-            six_r_zeta_5_t_2
+        six_r_zeta_5_in_axes5_x_2 + six_r_J_5_t*six_r_alpha_4_in_axes4_x +
+            six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x -
+        six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t_2 -
             six_r_J_5_t*six_r_alpha_4_in_axes4_z
         )
         six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
@@ -11703,7 +11703,7 @@ def _run_legs(m, X, V, A, q):
         six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz_2 - six_r_alpha_5_in_axes5_y
         six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz_2 + six_r_alpha_5_in_axes5_x
         # (six_r-a_o_3) acceleration of the origin of joint 3
-        six_r_a_o_3_t = six_r_omega_1_in_axes2_y_2*six_r_omega_1_in_axes2_y_2
+        six_r_a_o_3_t = six_r_omega_1_t_4*six_r_omega_1_t_4
         six_r_a_o_3_t_2 = six_r_qd_1_t_18*six_r_qd_1_t_18
         six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
@@ -12647,16 +12647,6 @@ def _run_condition(m, X, q):
         six_r_w_1_t_76 = inv_six_r_w_1_t_75*six_r_w_1_t_70
         six_r_w_1_t_77 = inv_six_r_w_1_t_75*six_r_w_1_t_71
         six_r_w_1_t_78 = inv_six_r_w_1_t_75*six_r_w_1_t_72
-        six_r_pivot_size = abs(six_r_w_1_t_8)
-        six_r_pivot_size_2 = abs(six_r_w_1_t_24)
-        six_r_pivot_size_3 = abs(six_r_w_1_t_45)
-        six_r_pivot_size_4 = abs(six_r_w_1_t_63)
-        six_r_pivot_size_5 = abs(six_r_w_1_t_75)
-        six_r_least_pivots = (
-        least(least(least(least(inv_six_r_size*six_r_pivot_size,
-            inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
-            inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5)
-        )
         # (six_r-m1_w_1) moment part 1 of reciprocal wrench 1
         six_r_m1_w_1_t = inv_six_r_w_1_t_75*six_r_w_1_t_73
         # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
@@ -12682,6 +12672,17 @@ def _run_condition(m, X, q):
         six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_67 - six_r_m1_w_1_t*six_r_w_2_t)
         # (six_r-m2_w_2) moment part 2 of reciprocal wrench 2
         six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_63*six_r_w_1_t_68 - six_r_m2_w_1_t*six_r_w_2_t)
+        # (six_r-w_5) force part of reciprocal wrench 5
+        six_r_pivot_size = abs(six_r_w_1_t_8)
+        six_r_pivot_size_2 = abs(six_r_w_1_t_24)
+        six_r_pivot_size_3 = abs(six_r_w_1_t_45)
+        six_r_pivot_size_4 = abs(six_r_w_1_t_63)
+        six_r_pivot_size_5 = abs(six_r_w_1_t_75)
+        six_r_least_pivots = (
+        least(least(least(least(inv_six_r_size*six_r_pivot_size,
+            inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
+            inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5)
+        )
         # (six_r-o_2) moment part of reciprocal wrench 2
         six_r_o_2_x = six_r_m1_w_2*six_r_n_m1_x + six_r_m2_w_2*six_r_n_m2_x
         six_r_o_2_y = six_r_m1_w_2*six_r_n_m1_y + six_r_m2_w_2*six_r_n_m2_y
@@ -12716,7 +12717,7 @@ def _run_condition(m, X, q):
         out_H[_H_six_r[3][leg]] = six_r_H_a_2_x
         out_H[_H_six_r[4][leg]] = six_r_H_a_2_y
         out_H[_H_six_r[5][leg]] = six_r_H_a_2_z
-        # (six_r-w_1) force part of reciprocal wrench 1
+        # (six_r-w_5) force part of reciprocal wrench 5
         out_pivots[_pivots_six_r[0][leg]] = six_r_least_pivots
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_six_r)*spread_t

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3CRS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1157,6 +1190,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1173,6 +1207,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1182,6 +1217,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1208,6 +1244,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1238,6 +1275,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1564,12 +1602,12 @@ typedef struct {
         crs_W_3_in_axes3_xz, crs_W_3_in_axes3_xy, crs_bias_in_axes3_x, crs_bias_in_axes3_y,
         crs_bias_in_axes3_z, crs_mu_3_t_4, crs_mu_3_t_5, crs_mu_3_t_6, crs_c_t, crs_c_t_2, crs_c_t_3,
         crs_S_ddot_in_axes3_x, crs_S_ddot_in_axes3_y, crs_S_ddot_in_axes3_z, crs_qdd_1, crs_qdd_2_t,
-        crs_qdd_2, crs_Q_xx, crs_Q_yy, crs_Q_t_13, crs_Q_xy, crs_Q_xz, crs_Q_yz, crs_M_ta_t,
-        crs_M_ta_t_2, crs_M_ta_t_3, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_7, crs_M_ta_t_8,
-        crs_M_ta_t_9, crs_M_aa_t, crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5,
-        crs_M_aa_t_6, crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
-        crs_acc_3_in_axes3_x, crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z, crs_c_in_axes3_x,
-        crs_c_in_axes3_y, crs_c_in_axes3_z;
+        crs_qdd_2, crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3, crs_Q_xx, crs_Q_yy,
+        crs_Q_t_13, crs_Q_xy, crs_Q_xz, crs_Q_yz, crs_M_ta_t, crs_M_ta_t_2, crs_M_ta_t_3,
+        crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_7, crs_M_ta_t_8, crs_M_ta_t_9, crs_M_aa_t,
+        crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6, crs_acc_3_in_axes3_x,
+        crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z, crs_c_in_axes3_x, crs_c_in_axes3_y,
+        crs_c_in_axes3_z;
 } values_crs;
 
 INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1788,104 +1826,6 @@ INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *s, const real *A, va
         v->crs_h_3_t_13*crs_rel_in_axes3_y + v->crs_qdd_2_t*v->crs_r_1_in_axes1_x;
 }
 
-INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
-{
-    /* (crs-w_3) reciprocal vector 3 */
-    const real crs_w_3_in_axes3_x = v->crs_h_3_t_13*v->inv_crs_v_3_in_axes1_x;
-    const real crs_w_3_in_axes3_y = v->crs_e_1_in_axes3_x*v->inv_crs_v_3_in_axes1_x;
-    /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real crs_d_Gamma_3_t = m->crs_J_3_in_spec3_zz[i]*v->inv_crs_v_3_in_axes1_x;
-    const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_h_3_t_13 -
-        m->crs_h_3_in_spec3_y[i];
-    const real crs_d_Gamma_3_in_axes3_y = m->crs_h_3_in_spec3_x[i] +
-        crs_d_Gamma_3_t*v->crs_e_1_in_axes3_x;
-    /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
-       inertia and weight */
-    const real crs_d_Gamma_2_t =
-        m->crs_link2_mass[i]*v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
-    const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*v->crs_e_1_in_axes3_x -
-        v->crs_h_3_t_13*m->crs_link2_mass[i];
-    /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real crs_d_Gamma_1_in_axes1_x =
-        v->inv_crs_v_3_in_axes1_x*(m->crs_J_3_in_spec3_xz[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_yz[i]*v->crs_h_3_t_13) - m->crs_h_3_in_spec3_z[i];
-    const real crs_d_Gamma_1_in_axes1_y = v->crs_h_3_in_axes1_x +
-        v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i] +
-        v->crs_e_1_in_axes3_x*(m->crs_J_3_in_spec3_xx[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_xy[i]*v->crs_h_3_t_13) -
-        v->crs_h_3_t_13*(m->crs_J_3_in_spec3_xy[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_yy[i]*v->crs_h_3_t_13));
-    /* (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real crs_d_G_in_axes3_zx =
-        crs_d_Gamma_1_in_axes1_x*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
-    const real crs_d_G_in_axes3_zy =
-        crs_d_Gamma_1_in_axes1_x*v->crs_e_1_in_axes3_x*v->crs_w_1_in_axes3_z;
-    /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real crs_d_c_in_axes3_xx = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_x -
-        crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-        v->crs_w_2_in_axes3_x*(v->crs_e_1_in_axes3_x*m->crs_link2_mass[i] +
-        crs_d_Gamma_2_t*v->crs_h_3_t_13);
-    const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_y -
-        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x -
-        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_x;
-    const real crs_d_c_in_axes3_yy = -m->crs_h_3_in_spec3_x[i]*crs_w_3_in_axes3_y -
-        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y -
-        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_y;
-    const real crs_d_c_in_axes3_zz = -crs_d_Gamma_1_in_axes1_y*v->crs_w_1_in_axes3_z -
-        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z -
-        m->crs_h_3_in_spec3_x[i]*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
-    /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy;
-    const real crs_Q_t_2 = R(0.5)*crs_Q_t;
-    const real crs_Q_t_3 = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_zz;
-    const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-    const real crs_Q_t_5 = v->axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
-        v->axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_x*crs_Q_t_2;
-    const real crs_Q_t_6 = v->axis_z_crs_axes3_y*crs_d_G_in_axes3_zy -
-        v->axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_y*crs_Q_t_2;
-    const real crs_Q_t_7 = v->axis_z_crs_axes3_z*crs_d_G_in_axes3_zy -
-        v->axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_z*crs_Q_t_2;
-    const real crs_Q_t_8 = v->axis_x_crs_axes3_x*crs_d_G_in_axes3_zx +
-        v->axis_z_crs_axes3_x*crs_Q_t_4;
-    const real crs_Q_t_9 = v->axis_x_crs_axes3_y*crs_d_G_in_axes3_zx +
-        v->axis_z_crs_axes3_y*crs_Q_t_4;
-    const real crs_Q_t_10 = v->axis_x_crs_axes3_z*crs_d_G_in_axes3_zx +
-        v->axis_z_crs_axes3_z*crs_Q_t_4;
-    const real crs_Q_t_11 = v->axis_y_crs_axes3_x*crs_Q_t_5 + v->axis_z_crs_axes3_x*crs_Q_t_8;
-    v->crs_Q_xx = 2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
-    const real crs_Q_t_12 = v->axis_y_crs_axes3_y*crs_Q_t_6 + v->axis_z_crs_axes3_y*crs_Q_t_9;
-    v->crs_Q_yy = 2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
-    v->crs_Q_t_13 = crs_d_c_in_axes3_xx + crs_d_c_in_axes3_yy + crs_d_c_in_axes3_zz +
-        v->crs_Q_xx + v->crs_Q_yy;
-    v->crs_Q_xy = v->axis_y_crs_axes3_x*crs_Q_t_6 + v->axis_y_crs_axes3_y*crs_Q_t_5 +
-        v->axis_z_crs_axes3_x*crs_Q_t_9 + v->axis_z_crs_axes3_y*crs_Q_t_8;
-    v->crs_Q_xz = v->axis_y_crs_axes3_x*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_5 +
-        v->axis_z_crs_axes3_x*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_8;
-    v->crs_Q_yz = v->axis_y_crs_axes3_y*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_6 +
-        v->axis_z_crs_axes3_y*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_9;
-    /* (M_ta) coupling block of M */
-    v->crs_M_ta_t = v->crs_Q_xx*v->crs_q_z - v->crs_Q_xz*v->crs_q_x;
-    v->crs_M_ta_t_2 = v->crs_Q_xx*v->crs_q_y - v->crs_Q_xy*v->crs_q_x;
-    v->crs_M_ta_t_3 = v->crs_Q_yy*v->crs_q_z - v->crs_Q_yz*v->crs_q_y;
-    const real crs_M_ta_t_4 = v->crs_Q_yz*v->crs_q_x;
-    v->crs_M_ta_t_5 = v->crs_Q_xy*v->crs_q_z - crs_M_ta_t_4;
-    v->crs_M_ta_t_6 = v->crs_Q_yy*v->crs_q_x - v->crs_Q_xy*v->crs_q_y;
-    v->crs_M_ta_t_7 = v->crs_Q_yz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_y;
-    v->crs_M_ta_t_8 = v->crs_Q_xz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_x;
-    v->crs_M_ta_t_9 = crs_M_ta_t_4 - v->crs_Q_xz*v->crs_q_y;
-    /* (M_aa) rotational block of M */
-    v->crs_M_aa_t = v->crs_M_ta_t_3*v->crs_q_z - v->crs_M_ta_t_7*v->crs_q_y;
-    v->crs_M_aa_t_2 = v->crs_M_ta_t_8*v->crs_q_y - v->crs_M_ta_t_5*v->crs_q_z;
-    v->crs_M_aa_t_3 = v->crs_M_ta_t_9*v->crs_q_y - v->crs_M_ta_t_6*v->crs_q_z;
-    v->crs_M_aa_t_4 = v->crs_M_ta_t*v->crs_q_z - v->crs_M_ta_t_8*v->crs_q_x;
-    v->crs_M_aa_t_5 = v->crs_M_ta_t_2*v->crs_q_z + v->crs_M_ta_t_9*v->crs_q_x;
-    v->crs_M_aa_t_6 = v->crs_M_ta_t_2*v->crs_q_y + v->crs_M_ta_t_6*v->crs_q_x;
-}
-
 INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_crs *v)
 {
@@ -1989,6 +1929,104 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     v->crs_Z_a_t = v->crs_U_z*v->crs_q_y - v->crs_U_y*v->crs_q_z;
     v->crs_Z_a_t_2 = v->crs_U_x*v->crs_q_z - v->crs_U_z*v->crs_q_x;
     v->crs_Z_a_t_3 = v->crs_U_y*v->crs_q_x - v->crs_U_x*v->crs_q_y;
+}
+
+INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
+{
+    /* (crs-w_3) reciprocal vector 3 */
+    const real crs_w_3_in_axes3_x = v->crs_h_3_t_13*v->inv_crs_v_3_in_axes1_x;
+    const real crs_w_3_in_axes3_y = v->crs_e_1_in_axes3_x*v->inv_crs_v_3_in_axes1_x;
+    /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real crs_d_Gamma_3_t = m->crs_J_3_in_spec3_zz[i]*v->inv_crs_v_3_in_axes1_x;
+    const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_h_3_t_13 -
+        m->crs_h_3_in_spec3_y[i];
+    const real crs_d_Gamma_3_in_axes3_y = m->crs_h_3_in_spec3_x[i] +
+        crs_d_Gamma_3_t*v->crs_e_1_in_axes3_x;
+    /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
+       inertia and weight */
+    const real crs_d_Gamma_2_t =
+        m->crs_link2_mass[i]*v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
+    const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*v->crs_e_1_in_axes3_x -
+        v->crs_h_3_t_13*m->crs_link2_mass[i];
+    /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real crs_d_Gamma_1_in_axes1_x =
+        v->inv_crs_v_3_in_axes1_x*(m->crs_J_3_in_spec3_xz[i]*v->crs_e_1_in_axes3_x -
+        m->crs_J_3_in_spec3_yz[i]*v->crs_h_3_t_13) - m->crs_h_3_in_spec3_z[i];
+    const real crs_d_Gamma_1_in_axes1_y = v->crs_h_3_in_axes1_x +
+        v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i] +
+        v->crs_e_1_in_axes3_x*(m->crs_J_3_in_spec3_xx[i]*v->crs_e_1_in_axes3_x -
+        m->crs_J_3_in_spec3_xy[i]*v->crs_h_3_t_13) -
+        v->crs_h_3_t_13*(m->crs_J_3_in_spec3_xy[i]*v->crs_e_1_in_axes3_x -
+        m->crs_J_3_in_spec3_yy[i]*v->crs_h_3_t_13));
+    /* (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real crs_d_G_in_axes3_zx =
+        crs_d_Gamma_1_in_axes1_x*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
+    const real crs_d_G_in_axes3_zy =
+        crs_d_Gamma_1_in_axes1_x*v->crs_e_1_in_axes3_x*v->crs_w_1_in_axes3_z;
+    /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real crs_d_c_in_axes3_xx = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_x -
+        crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+        v->crs_w_2_in_axes3_x*(v->crs_e_1_in_axes3_x*m->crs_link2_mass[i] +
+        crs_d_Gamma_2_t*v->crs_h_3_t_13);
+    const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_y -
+        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x -
+        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_x;
+    const real crs_d_c_in_axes3_yy = -m->crs_h_3_in_spec3_x[i]*crs_w_3_in_axes3_y -
+        crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y -
+        crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_y;
+    const real crs_d_c_in_axes3_zz = -crs_d_Gamma_1_in_axes1_y*v->crs_w_1_in_axes3_z -
+        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z -
+        m->crs_h_3_in_spec3_x[i]*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
+    /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy;
+    const real crs_Q_t_2 = R(0.5)*crs_Q_t;
+    const real crs_Q_t_3 = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_zz;
+    const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
+    const real crs_Q_t_5 = v->axis_z_crs_axes3_x*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_x*crs_Q_t_2;
+    const real crs_Q_t_6 = v->axis_z_crs_axes3_y*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_y*crs_Q_t_2;
+    const real crs_Q_t_7 = v->axis_z_crs_axes3_z*crs_d_G_in_axes3_zy -
+        v->axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + v->axis_y_crs_axes3_z*crs_Q_t_2;
+    const real crs_Q_t_8 = v->axis_x_crs_axes3_x*crs_d_G_in_axes3_zx +
+        v->axis_z_crs_axes3_x*crs_Q_t_4;
+    const real crs_Q_t_9 = v->axis_x_crs_axes3_y*crs_d_G_in_axes3_zx +
+        v->axis_z_crs_axes3_y*crs_Q_t_4;
+    const real crs_Q_t_10 = v->axis_x_crs_axes3_z*crs_d_G_in_axes3_zx +
+        v->axis_z_crs_axes3_z*crs_Q_t_4;
+    const real crs_Q_t_11 = v->axis_y_crs_axes3_x*crs_Q_t_5 + v->axis_z_crs_axes3_x*crs_Q_t_8;
+    v->crs_Q_xx = 2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
+    const real crs_Q_t_12 = v->axis_y_crs_axes3_y*crs_Q_t_6 + v->axis_z_crs_axes3_y*crs_Q_t_9;
+    v->crs_Q_yy = 2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
+    v->crs_Q_t_13 = crs_d_c_in_axes3_xx + crs_d_c_in_axes3_yy + crs_d_c_in_axes3_zz +
+        v->crs_Q_xx + v->crs_Q_yy;
+    v->crs_Q_xy = v->axis_y_crs_axes3_x*crs_Q_t_6 + v->axis_y_crs_axes3_y*crs_Q_t_5 +
+        v->axis_z_crs_axes3_x*crs_Q_t_9 + v->axis_z_crs_axes3_y*crs_Q_t_8;
+    v->crs_Q_xz = v->axis_y_crs_axes3_x*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_5 +
+        v->axis_z_crs_axes3_x*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_8;
+    v->crs_Q_yz = v->axis_y_crs_axes3_y*crs_Q_t_7 + v->axis_y_crs_axes3_z*crs_Q_t_6 +
+        v->axis_z_crs_axes3_y*crs_Q_t_10 + v->axis_z_crs_axes3_z*crs_Q_t_9;
+    /* (M_ta) coupling block of M */
+    v->crs_M_ta_t = v->crs_Q_xx*v->crs_q_z - v->crs_Q_xz*v->crs_q_x;
+    v->crs_M_ta_t_2 = v->crs_Q_xx*v->crs_q_y - v->crs_Q_xy*v->crs_q_x;
+    v->crs_M_ta_t_3 = v->crs_Q_yy*v->crs_q_z - v->crs_Q_yz*v->crs_q_y;
+    const real crs_M_ta_t_4 = v->crs_Q_yz*v->crs_q_x;
+    v->crs_M_ta_t_5 = v->crs_Q_xy*v->crs_q_z - crs_M_ta_t_4;
+    v->crs_M_ta_t_6 = v->crs_Q_yy*v->crs_q_x - v->crs_Q_xy*v->crs_q_y;
+    v->crs_M_ta_t_7 = v->crs_Q_yz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_y;
+    v->crs_M_ta_t_8 = v->crs_Q_xz*v->crs_q_z + v->crs_Q_t_13*v->crs_q_x;
+    v->crs_M_ta_t_9 = crs_M_ta_t_4 - v->crs_Q_xz*v->crs_q_y;
+    /* (M_aa) rotational block of M */
+    v->crs_M_aa_t = v->crs_M_ta_t_3*v->crs_q_z - v->crs_M_ta_t_7*v->crs_q_y;
+    v->crs_M_aa_t_2 = v->crs_M_ta_t_8*v->crs_q_y - v->crs_M_ta_t_5*v->crs_q_z;
+    v->crs_M_aa_t_3 = v->crs_M_ta_t_9*v->crs_q_y - v->crs_M_ta_t_6*v->crs_q_z;
+    v->crs_M_aa_t_4 = v->crs_M_ta_t*v->crs_q_z - v->crs_M_ta_t_8*v->crs_q_x;
+    v->crs_M_aa_t_5 = v->crs_M_ta_t_2*v->crs_q_z + v->crs_M_ta_t_9*v->crs_q_x;
+    v->crs_M_aa_t_6 = v->crs_M_ta_t_2*v->crs_q_y + v->crs_M_ta_t_6*v->crs_q_x;
 }
 
 INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
@@ -2097,6 +2135,72 @@ INLINE void any_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[14*count + at];
 }
 
+INLINE void any_sums_crs(size_t k, size_t count, int add, const values_crs *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->crs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->crs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->crs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->crs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->crs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->crs_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->crs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->crs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v->crs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->crs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->crs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->crs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->crs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->crs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->crs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->crs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->crs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->crs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->crs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->crs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_crs_2(size_t k, size_t count, int add, const values_crs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->crs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->crs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->crs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->crs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->crs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->crs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_crs(size_t k, size_t count, const values_crs *v, real *o)
+{
+    /* (crs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->crs_w_1_x;
+    o[1*count + k] = v->crs_w_1_y;
+    o[2*count + k] = v->crs_w_1_z;
+    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->crs_H_a_1_x;
+    o[4*count + k] = v->crs_H_a_1_y;
+    o[5*count + k] = v->crs_H_a_1_z;
+    /* (crs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v->crs_w_2_x;
+    o[7*count + k] = v->crs_w_2_y;
+    o[8*count + k] = v->crs_w_2_z;
+    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v->crs_H_a_2_x;
+    o[10*count + k] = v->crs_H_a_2_y;
+    o[11*count + k] = v->crs_H_a_2_z;
+}
+
+INLINE void any_singular_crs(const prepared *m, size_t i, size_t k, const values_crs *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) +
+        UNLESS(magnitude(v->crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
+        UNLESS(magnitude(v->crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
+}
+
 INLINE void any_place_crs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
@@ -2167,76 +2271,29 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_V_X(m, w, i, j, V, &v);
-    stage_crs_M_dynamics(m, i, &v);
     stage_crs_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.crs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.crs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.crs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.crs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.crs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.crs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.crs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.crs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.crs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.crs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.crs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.crs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.crs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.crs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.crs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.crs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.crs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.crs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.crs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (crs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crs_w_1_x;
-    o[1*count + k] = v.crs_w_1_y;
-    o[2*count + k] = v.crs_w_1_z;
-    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.crs_H_a_1_x;
-    o[4*count + k] = v.crs_H_a_1_y;
-    o[5*count + k] = v.crs_H_a_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.crs_w_2_x;
-    o[7*count + k] = v.crs_w_2_y;
-    o[8*count + k] = v.crs_w_2_z;
-    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.crs_H_a_2_x;
-    o[10*count + k] = v.crs_H_a_2_y;
-    o[11*count + k] = v.crs_H_a_2_z;
+    stage_crs_M_dynamics(m, i, &v);
+    any_sums_crs(k, count, add, &v, terms);
+    any_sums_crs_2(k, count, add, &v, terms + 20*count);
+    any_entries_crs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
         (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
         (v.crs_H_a_2_x + (v.crs_H_a_2_y + v.crs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
-        TOLERANCE*m->crs_size[i]);
-    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2255,7 +2312,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2274,7 +2331,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2284,7 +2341,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2357,6 +2414,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_crs[26*LEGS(LEGS_OF_crs)] CLEARED, o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         dynamics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
@@ -2373,8 +2431,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_crs[15*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_crs[15*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2382,13 +2441,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2401,46 +2463,22 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.crs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.crs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.crs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.crs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.crs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.crs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.crs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.crs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.crs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.crs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.crs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.crs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.crs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.crs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.crs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.crs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.crs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.crs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.crs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.crs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
-        + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
+    any_sums_crs(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2459,7 +2497,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2532,6 +2570,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_crs[20*LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         M_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
@@ -2547,21 +2586,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_crs[2*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_crs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crs_2(k, k, LANES, o_crs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2586,23 +2629,14 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_V_X(m, w, i, j, V, &v);
     stage_crs_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.crs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.crs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.crs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.crs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.crs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.crs_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
-        + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
+    any_sums_crs_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2612,7 +2646,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2639,6 +2673,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_crs[6*LEGS(LEGS_OF_crs)] CLEARED, o_crs[2*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         Z_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, V, terms_crs, o_crs);
     }
@@ -2655,8 +2690,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_crs[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_crs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2664,13 +2700,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crs_2(k, k, LANES, o_crs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2682,30 +2721,12 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
-    /* (crs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crs_w_1_x;
-    o[1*count + k] = v.crs_w_1_y;
-    o[2*count + k] = v.crs_w_1_z;
-    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.crs_H_a_1_x;
-    o[4*count + k] = v.crs_H_a_1_y;
-    o[5*count + k] = v.crs_H_a_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.crs_w_2_x;
-    o[7*count + k] = v.crs_w_2_y;
-    o[8*count + k] = v.crs_w_2_z;
-    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.crs_H_a_2_x;
-    o[10*count + k] = v.crs_H_a_2_y;
-    o[11*count + k] = v.crs_H_a_2_z;
+    any_entries_crs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
         (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
         (v.crs_H_a_2_x + (v.crs_H_a_2_y + v.crs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
-        TOLERANCE*m->crs_size[i]);
-    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2714,6 +2735,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_crs[15*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         H_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
@@ -2725,16 +2747,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_crs[15*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_crs[15*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_crs(m, LANES, i, k, k, LANES, s, X, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
         }
@@ -2824,11 +2849,11 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_crs_axes3_y*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_y*v.crs_c_in_axes3_z;
     const real crs_c_z = v.axis_x_crs_axes3_z*v.crs_c_in_axes3_x +
         v.axis_y_crs_axes3_z*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_z*v.crs_c_in_axes3_z;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real crs_R_a_t = crs_c_y*v.crs_q_z - crs_c_z*v.crs_q_y;
     const real crs_R_a_t_2 = crs_c_z*v.crs_q_x - crs_c_x*v.crs_q_z;
     const real crs_R_a_t_3 = crs_c_x*v.crs_q_y - crs_c_y*v.crs_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, crs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, crs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, crs_c_z);  /* R_t_z_of_legs */
@@ -2836,27 +2861,9 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, crs_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, crs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, crs_R_a_t_3);  /* R_a_z_of_legs */
-    /* (crs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crs_w_1_x;
-    o[1*count + k] = v.crs_w_1_y;
-    o[2*count + k] = v.crs_w_1_z;
-    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.crs_H_a_1_x;
-    o[4*count + k] = v.crs_H_a_1_y;
-    o[5*count + k] = v.crs_H_a_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.crs_w_2_x;
-    o[7*count + k] = v.crs_w_2_y;
-    o[8*count + k] = v.crs_w_2_z;
-    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.crs_H_a_2_x;
-    o[10*count + k] = v.crs_H_a_2_y;
-    o[11*count + k] = v.crs_H_a_2_z;
-    o[13*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
-        TOLERANCE*m->crs_size[i]);
+    any_entries_crs(k, count, &v, o);
     o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 13*count);
 }
 
 INLINE void required_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2880,7 +2887,7 @@ INLINE void required_place_crs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2890,7 +2897,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2918,6 +2925,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
             required_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), 0, s, X, V, A, terms_crs,
                 o_crs);
@@ -2936,8 +2944,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_crs[14*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_crs[14*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -2945,13 +2954,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_crs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_crs(LANES, i, k, k, LANES, o_crs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2973,10 +2985,10 @@ INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = v.crs_h_3_t_11;
     /* (crs-q_3) */
     o[2*count + k] = crs_q_3;
-    o[5*count + k] = crs_q_1 + (v.crs_h_3_t_11 + crs_q_3);
+    o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
-    o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[5*count + k] = crs_q_1 + (v.crs_h_3_t_11 + crs_q_3);
 }
 
 INLINE void inverse_kinematics_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2996,6 +3008,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         inverse_kinematics_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, o_crs);
     }
@@ -3007,16 +3020,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_crs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_crs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_crs(m, LANES, i, k, k, LANES, s, X, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_crs(LANES, i, k, k, LANES, o_crs, q, t);
         }
@@ -3036,11 +3052,9 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.crs_qd_2;
     /* (crs-qd_3) rate of joint 3 */
     o[2*count + k] = v.crs_qd_2_t;
-    o[5*count + k] = v.crs_qd_1 + (v.crs_qd_2 + v.crs_qd_2_t);
-    o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
-        + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.crs_qd_1 + (v.crs_qd_2 + v.crs_qd_2_t);
 }
 
 INLINE void joint_rates_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3061,6 +3075,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_rates_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, o_crs);
     }
@@ -3072,16 +3087,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_crs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_crs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_crs(m, LANES, i, k, k, LANES, s, X, V, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_crs(LANES, i, k, k, LANES, o_crs, qd, t);
         }
@@ -3102,11 +3120,9 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.crs_qdd_2;
     /* (crs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.crs_qdd_2_t;
-    o[5*count + k] = v.crs_qdd_1 + (v.crs_qdd_2 + v.crs_qdd_2_t);
-    o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i])
-        + UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
-        UNLESS(magnitude(v.crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
     o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.crs_qdd_1 + (v.crs_qdd_2 + v.crs_qdd_2_t);
 }
 
 INLINE void joint_accelerations_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3127,6 +3143,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_crs[6*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         joint_accelerations_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
     }
@@ -3138,16 +3155,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_crs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_crs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_crs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_crs(m, LANES, i, k, k, LANES, s, X, V, A, o_crs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_crs(LANES, i, k, k, LANES, o_crs, qdd, t);
         }
@@ -3191,11 +3211,8 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[6*count + k] = v.crs_w_2_x;
     o[7*count + k] = v.crs_w_2_y;
     o[8*count + k] = v.crs_w_2_z;
-    o[10*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
-        TOLERANCE*m->crs_size[i]);
     o[9*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 10*count);
 }
 
 INLINE void legs_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3222,6 +3239,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
             legs_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), s, X, V, A, o_crs);
         }
@@ -3262,9 +3280,9 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
         m->crs_potential_t_2[i]*v.crs_s_1) + v.crs_h_3_in_axes1_x);
     /* (potential) */
     gather(&terms[0*count + k], add, crs_potential_t_3);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
         TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
-    o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3284,6 +3302,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_crs); i += BESIDE(LEGS_OF_crs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_crs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_crs); ++k) {
             potential_legs_crs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs,
                 o_crs);
@@ -3331,7 +3350,7 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     const real crs_pivot_size_3 = magnitude(v.crs_v_3_in_axes1_x);
     const real crs_least_pivots = lesser(lesser(root(crs_pivot_size*m->inv_crs_size_t_2[i]),
         crs_pivot_size_2*m->inv_crs_size[i]), crs_pivot_size_3*m->inv_crs_size[i]);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real crs_spread_t = m->b_c_in_platform_x - m->crs_platform_point_x[i];
     const real crs_spread_t_2 = m->b_c_in_platform_y - m->crs_platform_point_y[i];
     const real crs_spread_t_3 = m->b_c_in_platform_z - m->crs_platform_point_z[i];
@@ -3339,34 +3358,16 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
         crs_spread_t_3*crs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, crs_spread_t_4);  /* spread_crs */
-    /* (crs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.crs_w_1_x;
-    o[1*count + k] = v.crs_w_1_y;
-    o[2*count + k] = v.crs_w_1_z;
-    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.crs_H_a_1_x;
-    o[4*count + k] = v.crs_H_a_1_y;
-    o[5*count + k] = v.crs_H_a_1_z;
-    /* (crs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.crs_w_2_x;
-    o[7*count + k] = v.crs_w_2_y;
-    o[8*count + k] = v.crs_w_2_z;
-    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.crs_H_a_2_x;
-    o[10*count + k] = v.crs_H_a_2_y;
-    o[11*count + k] = v.crs_H_a_2_z;
+    any_entries_crs(k, count, &v, o);
     /* (crs-G) */
     o[12*count + k] = crs_least_pivots;
     o[13*count + k] = v.crs_h_3_t_10;
+    o[14*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    any_singular_crs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + ((v.crs_H_a_1_x +
         v.crs_H_a_1_y) + (v.crs_H_a_1_z + v.crs_w_2_x))) + ((v.crs_w_2_y + (v.crs_w_2_z +
         v.crs_H_a_2_x)) + ((v.crs_H_a_2_y + v.crs_H_a_2_z) + (crs_least_pivots +
         v.crs_h_3_t_10)));
-    o[15*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) + UNLESS(magnitude(v.crs_v_1_in_axes3_z) >
-        TOLERANCE*m->crs_size[i]) + UNLESS(magnitude(v.crs_v_3_in_axes1_x) >
-        TOLERANCE*m->crs_size[i]);
-    o[14*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
 }
 
 INLINE void condition_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3394,7 +3395,7 @@ INLINE void condition_place_crs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_crs = sums[0*w + k];
     const real spread_ = root(spread_crs)*m->spread_t;
     /* (spread) */
@@ -3409,6 +3410,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_crs[LEGS(LEGS_OF_crs)] CLEARED, o_crs[17*LEGS(LEGS_OF_crs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_crs))
     for (size_t k = 0; k < LEGS(LEGS_OF_crs); ++k) {
         condition_legs_crs(m, 1, k, 0, k, LEGS(LEGS_OF_crs), 0, s, X, terms_crs, o_crs);
     }
@@ -3437,8 +3439,8 @@ int hybrid_3crs_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3460,8 +3462,8 @@ int hybrid_3crs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3484,8 +3486,8 @@ int hybrid_3crs_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3507,8 +3509,8 @@ int hybrid_3crs_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3531,8 +3533,8 @@ int hybrid_3crs_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3557,8 +3559,8 @@ int hybrid_3crs_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3588,8 +3590,8 @@ int hybrid_3crs_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3603,6 +3605,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3802,15 +3805,16 @@ int hybrid_3crs_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3855,10 +3859,10 @@ int hybrid_3crs_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3866,9 +3870,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

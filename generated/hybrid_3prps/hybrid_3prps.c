@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3PRPS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -162,6 +187,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -188,6 +214,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -247,19 +274,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -307,10 +337,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -362,6 +394,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1139,6 +1172,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1155,6 +1189,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1164,6 +1199,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1190,6 +1226,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1220,6 +1257,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1528,11 +1566,11 @@ typedef struct {
         prps_H_a_3_x, prps_H_a_3_y, prps_H_a_3_z, prps_S_dot_t, prps_S_dot_t_2, prps_S_dot_t_3,
         prps_S_dot_x, prps_S_dot_y, prps_S_dot_z, prps_S_dot_in_axes2_x, prps_qd_2,
         prps_W_2_in_axes2_xx, prps_bias_in_axes2_y, prps_phi_3_t, prps_c_t, prps_S_ddot_in_axes2_x,
-        prps_S_ddot_in_axes2_y, prps_S_ddot_in_axes2_z, prps_qdd_2, prps_Q_xx, prps_Q_yy, prps_Q_zz,
-        prps_Q_xy, prps_Q_xz, prps_Q_yz, prps_M_ta_t, prps_M_ta_t_2, prps_M_ta_t_3, prps_M_ta_t_5,
-        prps_M_ta_t_6, prps_M_ta_t_7, prps_M_ta_t_8, prps_M_ta_t_9, prps_M_aa_t, prps_M_aa_t_2,
-        prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_U_x, prps_U_y, prps_U_z,
-        prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3, prps_acc_1_in_axes0_z, prps_acc_3_in_axes2_x,
+        prps_S_ddot_in_axes2_y, prps_S_ddot_in_axes2_z, prps_qdd_2, prps_U_x, prps_U_y, prps_U_z,
+        prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3, prps_Q_xx, prps_Q_yy, prps_Q_zz, prps_Q_xy, prps_Q_xz,
+        prps_Q_yz, prps_M_ta_t, prps_M_ta_t_2, prps_M_ta_t_3, prps_M_ta_t_5, prps_M_ta_t_6,
+        prps_M_ta_t_7, prps_M_ta_t_8, prps_M_ta_t_9, prps_M_aa_t, prps_M_aa_t_2, prps_M_aa_t_3,
+        prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_acc_1_in_axes0_z, prps_acc_3_in_axes2_x,
         prps_acc_3_in_axes2_y, prps_phi_3_in_axes2_x, prps_T_1_in_axes0_z, prps_c_in_axes2_y;
 } values_prps;
 
@@ -1674,56 +1712,6 @@ INLINE void stage_prps_A_V_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->prps_qdd_2 = v->inv_prps_q_3*prps_rel_in_axes2_y;
 }
 
-INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
-{
-    /* (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real prps_d_Gamma_2_in_axes2_y = m->prps_h_3_in_spec2_x[i] +
-        v->inv_prps_q_3*m->prps_Jc_2_in_axes2_zz[i];
-    /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real prps_d_c_in_axes2_xy = v->inv_prps_q_3*m->prps_h_3_in_spec2_y[i];
-    const real prps_d_c_in_axes2_yy = -v->inv_prps_q_3*m->prps_h_3_in_spec2_x[i] -
-        v->inv_prps_q_3*prps_d_Gamma_2_in_axes2_y;
-    /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
-    const real prps_Q_t_2 = v->axis_x_prps_axes2_x*prps_d_c_in_axes2_xy +
-        v->axis_y_prps_axes2_x*prps_Q_t;
-    const real prps_Q_t_3 = v->axis_x_prps_axes2_y*prps_d_c_in_axes2_xy +
-        v->axis_y_prps_axes2_y*prps_Q_t;
-    const real prps_Q_t_4 = v->axis_x_prps_axes2_z*prps_d_c_in_axes2_xy +
-        v->axis_y_prps_axes2_z*prps_Q_t;
-    const real prps_Q_t_13 = v->axis_y_prps_axes2_x*prps_Q_t_2 - m->prps_Q_t_5[i];
-    v->prps_Q_xx = -2*prps_Q_t_13;
-    const real prps_Q_t_14 = v->axis_y_prps_axes2_y*prps_Q_t_3 - m->prps_Q_t_6[i];
-    v->prps_Q_yy = -2*prps_Q_t_14;
-    v->prps_Q_zz = m->prps_P_c_1_in_axes0_z[i] - prps_d_c_in_axes2_yy - v->prps_Q_xx -
-        v->prps_Q_yy;
-    v->prps_Q_xy = m->prps_Q_t_7[i] + m->prps_Q_t_8[i] - v->axis_y_prps_axes2_x*prps_Q_t_3 -
-        v->axis_y_prps_axes2_y*prps_Q_t_2;
-    v->prps_Q_xz = m->prps_Q_t_10[i] + m->prps_Q_t_9[i] - v->axis_y_prps_axes2_x*prps_Q_t_4 -
-        v->axis_y_prps_axes2_z*prps_Q_t_2;
-    v->prps_Q_yz = m->prps_Q_t_11[i] + m->prps_Q_t_12[i] - v->axis_y_prps_axes2_y*prps_Q_t_4 -
-        v->axis_y_prps_axes2_z*prps_Q_t_3;
-    /* (M_ta) coupling block of M */
-    v->prps_M_ta_t = v->prps_Q_xz*v->prps_q_x - v->prps_Q_xx*v->prps_q_z;
-    v->prps_M_ta_t_2 = v->prps_Q_xy*v->prps_q_x - v->prps_Q_xx*v->prps_q_y;
-    v->prps_M_ta_t_3 = v->prps_Q_yz*v->prps_q_y - v->prps_Q_yy*v->prps_q_z;
-    const real prps_M_ta_t_4 = v->prps_Q_yz*v->prps_q_x;
-    v->prps_M_ta_t_5 = v->prps_Q_xy*v->prps_q_z - prps_M_ta_t_4;
-    v->prps_M_ta_t_6 = v->prps_Q_yy*v->prps_q_x - v->prps_Q_xy*v->prps_q_y;
-    v->prps_M_ta_t_7 = v->prps_Q_zz*v->prps_q_y - v->prps_Q_yz*v->prps_q_z;
-    v->prps_M_ta_t_8 = v->prps_Q_xz*v->prps_q_z - v->prps_Q_zz*v->prps_q_x;
-    v->prps_M_ta_t_9 = v->prps_Q_xz*v->prps_q_y - prps_M_ta_t_4;
-    /* (M_aa) rotational block of M */
-    v->prps_M_aa_t = v->prps_M_ta_t_7*v->prps_q_y - v->prps_M_ta_t_3*v->prps_q_z;
-    v->prps_M_aa_t_2 = v->prps_M_ta_t_8*v->prps_q_y - v->prps_M_ta_t_5*v->prps_q_z;
-    v->prps_M_aa_t_3 = v->prps_M_ta_t_6*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_y;
-    v->prps_M_aa_t_4 = v->prps_M_ta_t*v->prps_q_z + v->prps_M_ta_t_8*v->prps_q_x;
-    v->prps_M_aa_t_5 = v->prps_M_ta_t_2*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_x;
-    v->prps_M_aa_t_6 = v->prps_M_ta_t_6*v->prps_q_x - v->prps_M_ta_t_2*v->prps_q_y;
-}
-
 INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_prps *v)
 {
@@ -1781,6 +1769,56 @@ INLINE void stage_prps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     v->prps_Z_a_t = v->prps_U_z*v->prps_q_y - v->prps_U_y*v->prps_q_z;
     v->prps_Z_a_t_2 = v->prps_U_x*v->prps_q_z - v->prps_U_z*v->prps_q_x;
     v->prps_Z_a_t_3 = v->prps_U_y*v->prps_q_x - v->prps_U_x*v->prps_q_y;
+}
+
+INLINE void stage_prps_M_dynamics(const prepared *m, size_t i, values_prps *v)
+{
+    /* (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real prps_d_Gamma_2_in_axes2_y = m->prps_h_3_in_spec2_x[i] +
+        v->inv_prps_q_3*m->prps_Jc_2_in_axes2_zz[i];
+    /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real prps_d_c_in_axes2_xy = v->inv_prps_q_3*m->prps_h_3_in_spec2_y[i];
+    const real prps_d_c_in_axes2_yy = -v->inv_prps_q_3*m->prps_h_3_in_spec2_x[i] -
+        v->inv_prps_q_3*prps_d_Gamma_2_in_axes2_y;
+    /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
+    const real prps_Q_t_2 = v->axis_x_prps_axes2_x*prps_d_c_in_axes2_xy +
+        v->axis_y_prps_axes2_x*prps_Q_t;
+    const real prps_Q_t_3 = v->axis_x_prps_axes2_y*prps_d_c_in_axes2_xy +
+        v->axis_y_prps_axes2_y*prps_Q_t;
+    const real prps_Q_t_4 = v->axis_x_prps_axes2_z*prps_d_c_in_axes2_xy +
+        v->axis_y_prps_axes2_z*prps_Q_t;
+    const real prps_Q_t_13 = v->axis_y_prps_axes2_x*prps_Q_t_2 - m->prps_Q_t_5[i];
+    v->prps_Q_xx = -2*prps_Q_t_13;
+    const real prps_Q_t_14 = v->axis_y_prps_axes2_y*prps_Q_t_3 - m->prps_Q_t_6[i];
+    v->prps_Q_yy = -2*prps_Q_t_14;
+    v->prps_Q_zz = m->prps_P_c_1_in_axes0_z[i] - prps_d_c_in_axes2_yy - v->prps_Q_xx -
+        v->prps_Q_yy;
+    v->prps_Q_xy = m->prps_Q_t_7[i] + m->prps_Q_t_8[i] - v->axis_y_prps_axes2_x*prps_Q_t_3 -
+        v->axis_y_prps_axes2_y*prps_Q_t_2;
+    v->prps_Q_xz = m->prps_Q_t_10[i] + m->prps_Q_t_9[i] - v->axis_y_prps_axes2_x*prps_Q_t_4 -
+        v->axis_y_prps_axes2_z*prps_Q_t_2;
+    v->prps_Q_yz = m->prps_Q_t_11[i] + m->prps_Q_t_12[i] - v->axis_y_prps_axes2_y*prps_Q_t_4 -
+        v->axis_y_prps_axes2_z*prps_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->prps_M_ta_t = v->prps_Q_xz*v->prps_q_x - v->prps_Q_xx*v->prps_q_z;
+    v->prps_M_ta_t_2 = v->prps_Q_xy*v->prps_q_x - v->prps_Q_xx*v->prps_q_y;
+    v->prps_M_ta_t_3 = v->prps_Q_yz*v->prps_q_y - v->prps_Q_yy*v->prps_q_z;
+    const real prps_M_ta_t_4 = v->prps_Q_yz*v->prps_q_x;
+    v->prps_M_ta_t_5 = v->prps_Q_xy*v->prps_q_z - prps_M_ta_t_4;
+    v->prps_M_ta_t_6 = v->prps_Q_yy*v->prps_q_x - v->prps_Q_xy*v->prps_q_y;
+    v->prps_M_ta_t_7 = v->prps_Q_zz*v->prps_q_y - v->prps_Q_yz*v->prps_q_z;
+    v->prps_M_ta_t_8 = v->prps_Q_xz*v->prps_q_z - v->prps_Q_zz*v->prps_q_x;
+    v->prps_M_ta_t_9 = v->prps_Q_xz*v->prps_q_y - prps_M_ta_t_4;
+    /* (M_aa) rotational block of M */
+    v->prps_M_aa_t = v->prps_M_ta_t_7*v->prps_q_y - v->prps_M_ta_t_3*v->prps_q_z;
+    v->prps_M_aa_t_2 = v->prps_M_ta_t_8*v->prps_q_y - v->prps_M_ta_t_5*v->prps_q_z;
+    v->prps_M_aa_t_3 = v->prps_M_ta_t_6*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_y;
+    v->prps_M_aa_t_4 = v->prps_M_ta_t*v->prps_q_z + v->prps_M_ta_t_8*v->prps_q_x;
+    v->prps_M_aa_t_5 = v->prps_M_ta_t_2*v->prps_q_z + v->prps_M_ta_t_9*v->prps_q_x;
+    v->prps_M_aa_t_6 = v->prps_M_ta_t_6*v->prps_q_x - v->prps_M_ta_t_2*v->prps_q_y;
 }
 
 INLINE void stage_prps_legs_required(const prepared *m, size_t i, values_prps *v)
@@ -1847,6 +1885,66 @@ INLINE void any_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count
     H[(5*NU + 1 + 2*i)*w + k] = o[11*count + at];
     t->singular[k] += o[12*count + at];
     t->total[k] += o[13*count + at];
+}
+
+INLINE void any_sums_prps(size_t k, size_t count, int add, const values_prps *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->prps_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->prps_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->prps_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->prps_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->prps_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->prps_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->prps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v->prps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v->prps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->prps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->prps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->prps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->prps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->prps_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->prps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->prps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->prps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->prps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->prps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->prps_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_prps_2(size_t k, size_t count, int add, const values_prps *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->prps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->prps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->prps_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->prps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->prps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->prps_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_prps(const prepared *m, size_t i, size_t k, size_t count, const
+    values_prps *v, real *o)
+{
+    /* (prps-w_1) reciprocal vector 1 */
+    o[0*count + k] = m->prps_base_frame_xz[i];
+    o[1*count + k] = m->prps_base_frame_yz[i];
+    o[2*count + k] = m->prps_base_frame_zz[i];
+    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->prps_H_a_1_x;
+    o[4*count + k] = v->prps_H_a_1_y;
+    o[5*count + k] = v->prps_H_a_1_z;
+    /* (prps-w_3) reciprocal vector 3 */
+    o[6*count + k] = v->axis_x_prps_axes2_x;
+    o[7*count + k] = v->axis_x_prps_axes2_y;
+    o[8*count + k] = v->axis_x_prps_axes2_z;
+    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v->prps_H_a_3_x;
+    o[10*count + k] = v->prps_H_a_3_y;
+    o[11*count + k] = v->prps_H_a_3_z;
 }
 
 INLINE void any_place_prps_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1918,74 +2016,30 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
     stage_prps_V_X(m, w, i, j, V, &v);
-    stage_prps_M_dynamics(m, i, &v);
     stage_prps_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.prps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.prps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.prps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prps_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, -v.prps_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.prps_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.prps_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.prps_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prps_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.prps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.prps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.prps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.prps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.prps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.prps_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (prps-w_1) reciprocal vector 1 */
-    o[0*count + k] = m->prps_base_frame_xz[i];
-    o[1*count + k] = m->prps_base_frame_yz[i];
-    o[2*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prps_H_a_1_x;
-    o[4*count + k] = v.prps_H_a_1_y;
-    o[5*count + k] = v.prps_H_a_1_z;
-    /* (prps-w_3) reciprocal vector 3 */
-    o[6*count + k] = v.axis_x_prps_axes2_x;
-    o[7*count + k] = v.axis_x_prps_axes2_y;
-    o[8*count + k] = v.axis_x_prps_axes2_z;
-    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prps_H_a_3_x;
-    o[10*count + k] = v.prps_H_a_3_y;
-    o[11*count + k] = v.prps_H_a_3_z;
+    stage_prps_M_dynamics(m, i, &v);
+    any_sums_prps(k, count, add, &v, terms);
+    any_sums_prps_2(k, count, add, &v, terms + 20*count);
+    any_entries_prps(m, i, k, count, &v, o);
+    o[12*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
+        > LEAST_2);
     o[13*count + k] = ((m->prps_base_frame_xz[i] + (m->prps_base_frame_yz[i] +
         m->prps_base_frame_zz[i])) + (v.prps_H_a_1_x + (v.prps_H_a_1_y + v.prps_H_a_1_z))) +
         ((v.axis_x_prps_axes2_x + (v.axis_x_prps_axes2_y + v.axis_x_prps_axes2_z)) +
         (v.prps_H_a_3_x + (v.prps_H_a_3_y + v.prps_H_a_3_z)));
-    o[12*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
-        > LEAST_2);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2004,7 +2058,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2023,7 +2077,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2033,7 +2087,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2106,6 +2160,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_prps[26*LEGS(LEGS_OF_prps)] CLEARED, o_prps[14*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         dynamics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
@@ -2122,8 +2177,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_prps[14*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_prps[14*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2131,13 +2187,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2150,29 +2209,7 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
     stage_prps_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.prps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.prps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.prps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prps_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, -v.prps_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.prps_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.prps_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.prps_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.prps_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prps_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.prps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.prps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.prps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.prps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.prps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.prps_M_aa_t_6);  /* M_aa_zz_of_legs */
+    any_sums_prps(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
 }
@@ -2180,14 +2217,14 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2206,7 +2243,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2279,6 +2316,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_prps[20*LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         M_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
@@ -2294,21 +2332,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_prps[LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_prps[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prps_2(k, k, LANES, o_prps, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2333,21 +2375,14 @@ INLINE void Z_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_prps_X(m, w, i, j, s, X, &v);
     stage_prps_V_X(m, w, i, j, V, &v);
     stage_prps_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.prps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.prps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.prps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.prps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.prps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.prps_Z_a_t_3);  /* Z_a_z_of_legs */
+    any_sums_prps_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2357,7 +2392,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2384,6 +2419,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_prps[6*LEGS(LEGS_OF_prps)] CLEARED, o_prps[LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         Z_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, V, terms_prps, o_prps);
     }
@@ -2400,8 +2436,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_prps[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_prps[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2409,13 +2446,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prps_2(k, k, LANES, o_prps, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2427,28 +2467,13 @@ INLINE void H_legs_prps(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_prps v;
     stage_prps_X(m, w, i, j, s, X, &v);
-    /* (prps-w_1) reciprocal vector 1 */
-    o[0*count + k] = m->prps_base_frame_xz[i];
-    o[1*count + k] = m->prps_base_frame_yz[i];
-    o[2*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prps_H_a_1_x;
-    o[4*count + k] = v.prps_H_a_1_y;
-    o[5*count + k] = v.prps_H_a_1_z;
-    /* (prps-w_3) reciprocal vector 3 */
-    o[6*count + k] = v.axis_x_prps_axes2_x;
-    o[7*count + k] = v.axis_x_prps_axes2_y;
-    o[8*count + k] = v.axis_x_prps_axes2_z;
-    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prps_H_a_3_x;
-    o[10*count + k] = v.prps_H_a_3_y;
-    o[11*count + k] = v.prps_H_a_3_z;
+    any_entries_prps(m, i, k, count, &v, o);
+    o[12*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
+        > LEAST_2);
     o[13*count + k] = ((m->prps_base_frame_xz[i] + (m->prps_base_frame_yz[i] +
         m->prps_base_frame_zz[i])) + (v.prps_H_a_1_x + (v.prps_H_a_1_y + v.prps_H_a_1_z))) +
         ((v.axis_x_prps_axes2_x + (v.axis_x_prps_axes2_y + v.axis_x_prps_axes2_z)) +
         (v.prps_H_a_3_x + (v.prps_H_a_3_y + v.prps_H_a_3_z)));
-    o[12*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
-        > LEAST_2);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2457,6 +2482,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_prps[14*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         H_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
@@ -2468,16 +2494,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_prps[14*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prps[14*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prps(m, LANES, i, k, k, LANES, s, X, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
         }
@@ -2570,11 +2599,11 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     const real prps_c_z = v.axis_y_prps_axes2_z*v.prps_c_in_axes2_y -
         v.prps_T_1_in_axes0_z*m->prps_base_frame_zz[i] -
         v.axis_x_prps_axes2_z*v.prps_phi_3_in_axes2_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real prps_R_a_t = prps_c_y*v.prps_q_z - prps_c_z*v.prps_q_y;
     const real prps_R_a_t_2 = prps_c_z*v.prps_q_x - prps_c_x*v.prps_q_z;
     const real prps_R_a_t_3 = prps_c_x*v.prps_q_y - prps_c_y*v.prps_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, prps_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prps_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, prps_c_z);  /* R_t_z_of_legs */
@@ -2582,22 +2611,7 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[3*count + k], add, prps_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, prps_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, prps_R_a_t_3);  /* R_a_z_of_legs */
-    /* (prps-w_1) reciprocal vector 1 */
-    o[0*count + k] = m->prps_base_frame_xz[i];
-    o[1*count + k] = m->prps_base_frame_yz[i];
-    o[2*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prps_H_a_1_x;
-    o[4*count + k] = v.prps_H_a_1_y;
-    o[5*count + k] = v.prps_H_a_1_z;
-    /* (prps-w_3) reciprocal vector 3 */
-    o[6*count + k] = v.axis_x_prps_axes2_x;
-    o[7*count + k] = v.axis_x_prps_axes2_y;
-    o[8*count + k] = v.axis_x_prps_axes2_z;
-    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prps_H_a_3_x;
-    o[10*count + k] = v.prps_H_a_3_y;
-    o[11*count + k] = v.prps_H_a_3_z;
+    any_entries_prps(m, i, k, count, &v, o);
     o[12*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
 }
@@ -2622,7 +2636,7 @@ INLINE void required_place_prps(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2632,7 +2646,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2660,6 +2674,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
             required_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), 0, s, X, V, A,
                 terms_prps, o_prps);
@@ -2678,8 +2693,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_prps[13*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_prps[13*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -2687,13 +2703,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_prps(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_prps(LANES, i, k, k, LANES, o_prps, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2716,9 +2735,9 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = prps_q_2;
     /* (prps-q_3) displacement of joint 3 */
     o[2*count + k] = v.prps_q_3;
-    o[4*count + k] = prps_S_in_axes0_z + (prps_q_2 + v.prps_q_3);
     o[3*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
+    o[4*count + k] = prps_S_in_axes0_z + (prps_q_2 + v.prps_q_3);
 }
 
 INLINE void inverse_kinematics_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2737,6 +2756,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         inverse_kinematics_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, o_prps);
     }
@@ -2748,16 +2768,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prps[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prps[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_prps(m, LANES, i, k, k, LANES, s, X, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_prps(LANES, i, k, k, LANES, o_prps, q, t);
         }
@@ -2780,9 +2803,9 @@ INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.prps_qd_2;
     /* (prps-qd_3) rate of joint 3 */
     o[2*count + k] = v.prps_S_dot_in_axes2_x;
-    o[4*count + k] = prps_S_dot_in_axes2_z + (v.prps_qd_2 + v.prps_S_dot_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
+    o[4*count + k] = prps_S_dot_in_axes2_z + (v.prps_qd_2 + v.prps_S_dot_in_axes2_x);
 }
 
 INLINE void joint_rates_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -2802,6 +2825,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_rates_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, o_prps);
     }
@@ -2813,16 +2837,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prps[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prps[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_prps(m, LANES, i, k, k, LANES, s, X, V, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_prps(LANES, i, k, k, LANES, o_prps, qd, t);
         }
@@ -2846,9 +2873,9 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.prps_qdd_2;
     /* (prps-qdd_3) acceleration of joint 3 */
     o[2*count + k] = prps_rel_in_axes2_x;
-    o[4*count + k] = v.prps_S_ddot_in_axes2_z + (v.prps_qdd_2 + prps_rel_in_axes2_x);
     o[3*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
         > LEAST_2);
+    o[4*count + k] = v.prps_S_ddot_in_axes2_z + (v.prps_qdd_2 + prps_rel_in_axes2_x);
 }
 
 INLINE void joint_accelerations_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2868,6 +2895,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_prps[5*LEGS(LEGS_OF_prps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         joint_accelerations_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
     }
@@ -2879,16 +2907,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prps[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prps[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_prps(m, LANES, i, k, k, LANES, s, X, V, A, o_prps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_prps(LANES, i, k, k, LANES, o_prps, qdd, t);
         }
@@ -2959,6 +2990,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
             legs_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), s, X, V, A, o_prps);
         }
@@ -3026,6 +3058,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prps); i += BESIDE(LEGS_OF_prps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prps); ++k) {
             potential_legs_prps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps,
                 o_prps);
@@ -3072,7 +3105,7 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t i, size_t j,
     const real prps_pivot_size_2 = magnitude(v.prps_q_3);
     const real prps_least_pivots = lesser(R(1.3333333333333333)*root(prps_pivot_size),
         R(1.3333333333333333)*prps_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real prps_spread_t = m->b_c_in_platform_x - m->prps_platform_point_x[i];
     const real prps_spread_t_2 = m->b_c_in_platform_y - m->prps_platform_point_y[i];
     const real prps_spread_t_3 = m->b_c_in_platform_z - m->prps_platform_point_z[i];
@@ -3080,30 +3113,15 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t i, size_t j,
         + prps_spread_t_3*prps_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, prps_spread_t_4);  /* spread_prps */
-    /* (prps-w_1) reciprocal vector 1 */
-    o[0*count + k] = m->prps_base_frame_xz[i];
-    o[1*count + k] = m->prps_base_frame_yz[i];
-    o[2*count + k] = m->prps_base_frame_zz[i];
-    /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prps_H_a_1_x;
-    o[4*count + k] = v.prps_H_a_1_y;
-    o[5*count + k] = v.prps_H_a_1_z;
-    /* (prps-w_3) reciprocal vector 3 */
-    o[6*count + k] = v.axis_x_prps_axes2_x;
-    o[7*count + k] = v.axis_x_prps_axes2_y;
-    o[8*count + k] = v.axis_x_prps_axes2_z;
-    /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prps_H_a_3_x;
-    o[10*count + k] = v.prps_H_a_3_y;
-    o[11*count + k] = v.prps_H_a_3_z;
+    any_entries_prps(m, i, k, count, &v, o);
     /* (prps-G) */
     o[12*count + k] = prps_least_pivots;
+    o[13*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
+        > LEAST_2);
     o[14*count + k] = ((m->prps_base_frame_xz[i] + (m->prps_base_frame_yz[i] +
         m->prps_base_frame_zz[i])) + (v.prps_H_a_1_x + (v.prps_H_a_1_y + v.prps_H_a_1_z))) +
         ((v.axis_x_prps_axes2_x + (v.axis_x_prps_axes2_y + v.axis_x_prps_axes2_z)) +
         ((v.prps_H_a_3_x + v.prps_H_a_3_y) + (v.prps_H_a_3_z + prps_least_pivots)));
-    o[13*count + k] = UNLESS(magnitude(v.prps_q_3_t) > LEAST_1) + UNLESS(magnitude(v.prps_q_3)
-        > LEAST_2);
 }
 
 INLINE void condition_place_prps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3129,7 +3147,7 @@ INLINE void condition_place_prps(size_t w, size_t i, size_t k, size_t at, size_t
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_prps = sums[0*w + k];
     const real spread_ = root(spread_prps)*m->spread_t;
     /* (spread) */
@@ -3145,6 +3163,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_prps))
     for (size_t k = 0; k < LEGS(LEGS_OF_prps); ++k) {
         condition_legs_prps(m, 1, k, 0, k, LEGS(LEGS_OF_prps), 0, s, X, terms_prps, o_prps);
     }
@@ -3173,8 +3192,8 @@ int hybrid_3prps_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3196,8 +3215,8 @@ int hybrid_3prps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3220,8 +3239,8 @@ int hybrid_3prps_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3243,8 +3262,8 @@ int hybrid_3prps_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3267,8 +3286,8 @@ int hybrid_3prps_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3293,8 +3312,8 @@ int hybrid_3prps_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3324,8 +3343,8 @@ int hybrid_3prps_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3339,6 +3358,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3538,15 +3558,16 @@ int hybrid_3prps_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3591,10 +3612,10 @@ int hybrid_3prps_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3602,9 +3623,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

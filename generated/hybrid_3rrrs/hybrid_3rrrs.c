@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1276,6 +1309,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1292,6 +1326,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1301,6 +1336,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1327,6 +1363,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1357,6 +1394,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1687,12 +1725,12 @@ typedef struct {
         rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
         rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
         rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
-        rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
-        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
-        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
-        rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-        rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z,
-        rrrs_c_in_axes3_x, rrrs_c_in_axes3_y, rrrs_c_in_axes3_z;
+        rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
+        rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x,
+        rrrs_c_in_axes3_y, rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz,
+        rrrs_Q_yz, rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
+        rrrs_M_ta_t_7, rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3,
+        rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1970,119 +2008,6 @@ INLINE void stage_rrrs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, co
         v->rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
 }
 
-INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
-{
-    /* (rrrs-w_3) reciprocal vector 3 */
-    const real rrrs_w_3_in_axes3_x =
-        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
-    /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-    const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
-        m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
-    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
-    const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
-    const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
-    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
-        - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes1_zz =
-        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
-        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
-        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
-        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
-        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
-    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
-    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
-        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
-    /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_Jc_2_in_axes2_zz[i]
-        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
-    /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
-    const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
-        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
-        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
-        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
-        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
-    const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
-        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
-    /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
-    const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
-        rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
-        rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
-        m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
-        m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_zz =
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
-        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
-    const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
-    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-    const real rrrs_Q_t_6 = v->axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-    const real rrrs_Q_t_7 = v->axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_z*rrrs_Q_t_2;
-    const real rrrs_Q_t_8 = v->axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_4;
-    const real rrrs_Q_t_9 = v->axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_4;
-    const real rrrs_Q_t_10 = v->axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_z*rrrs_Q_t_4;
-    const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-    v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
-    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
-    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
-        + v->rrrs_Q_xx + v->rrrs_Q_yy;
-    v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
-    v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
-    v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
-    /* (M_ta) coupling block of M */
-    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
-    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
-    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
-    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
-    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
-    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
-    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
-    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
-    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
-    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
-    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
-    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
-}
-
 INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrrs *v)
 {
@@ -2319,6 +2244,119 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
 }
 
+INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
+{
+    /* (rrrs-w_3) reciprocal vector 3 */
+    const real rrrs_w_3_in_axes3_x =
+        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
+    /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
+    const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
+        m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
+    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
+    const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
+        - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes1_zz =
+        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
+        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
+        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
+        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
+        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
+        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
+    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
+    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_Jc_2_in_axes2_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
+    const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
+        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
+        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
+        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
+        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
+    const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
+        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
+    /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
+    const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
+        rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
+        rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_zz =
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
+        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
+    const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
+    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
+    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
+    const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+    const real rrrs_Q_t_6 = v->axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+    const real rrrs_Q_t_7 = v->axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+    const real rrrs_Q_t_8 = v->axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_4;
+    const real rrrs_Q_t_9 = v->axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_4;
+    const real rrrs_Q_t_10 = v->axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_z*rrrs_Q_t_4;
+    const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
+    v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
+    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
+        + v->rrrs_Q_xx + v->rrrs_Q_yy;
+    v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
+    v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
+    v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
+    /* (M_ta) coupling block of M */
+    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
+    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
+    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
+    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
+    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
+    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
+    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
+    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
+    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
+    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
+    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
+    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
+}
+
 INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     status_flags *t)
 {
@@ -2362,6 +2400,74 @@ INLINE void any_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count
     t->unreachable[k] += o[12*count + at];
     t->singular[k] += o[13*count + at];
     t->total[k] += o[14*count + at];
+}
+
+INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->rrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->rrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->rrrs_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->rrrs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->rrrs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, v->rrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->rrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrrs_2(size_t k, size_t count, int add, const values_rrrs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->rrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real *o)
+{
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrrs_w_1_x;
+    o[1*count + k] = v->rrrs_w_1_y;
+    o[2*count + k] = v->rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->rrrs_H_a_1_x;
+    o[4*count + k] = v->rrrs_H_a_1_y;
+    o[5*count + k] = v->rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v->rrrs_w_2_x;
+    o[7*count + k] = v->rrrs_w_2_y;
+    o[8*count + k] = v->rrrs_w_2_z;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v->rrrs_H_a_2_x;
+    o[10*count + k] = v->rrrs_H_a_2_y;
+    o[11*count + k] = v->rrrs_H_a_2_z;
+}
+
+INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const values_rrrs *v, real
+    *o)
+{
+    o[k] = UNLESS(magnitude(v->rrrs_h_2_t_9) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrs_h_2_t_16) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
+        UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
+        UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
 }
 
 INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -2434,77 +2540,29 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
-    stage_rrrs_M_dynamics(m, i, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    stage_rrrs_M_dynamics(m, i, &v);
+    any_sums_rrrs(k, count, add, &v, terms);
+    any_sums_rrrs_2(k, count, add, &v, terms + 20*count);
+    any_entries_rrrs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2523,7 +2581,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2542,7 +2600,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2552,7 +2610,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2625,6 +2683,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         dynamics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -2641,8 +2700,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_rrrs[15*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_rrrs[15*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2650,13 +2710,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2669,48 +2732,22 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
+    any_sums_rrrs(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2729,7 +2766,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2802,6 +2839,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rrrs[20*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         M_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -2817,21 +2855,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_rrrs[2*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_rrrs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2856,25 +2898,14 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
+    any_sums_rrrs_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2884,7 +2915,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2911,6 +2942,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         Z_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -2927,8 +2959,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rrrs[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rrrs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2936,13 +2969,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2954,31 +2990,12 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    any_entries_rrrs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2987,6 +3004,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         H_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -2998,16 +3016,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_rrrs[15*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrs[15*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
@@ -3097,11 +3118,11 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
         v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
     const real rrrs_c_z = v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y +
         v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
     const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
     const real rrrs_R_a_t_3 = rrrs_c_x*v.rrrs_q_y - rrrs_c_y*v.rrrs_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rrrs_c_z);  /* R_t_z_of_legs */
@@ -3109,28 +3130,9 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[3*count + k], add, rrrs_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
+    any_entries_rrrs(k, count, &v, o);
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
 }
 
 INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3154,7 +3156,7 @@ INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3164,7 +3166,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3192,6 +3194,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             required_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A,
                 terms_rrrs, o_rrrs);
@@ -3210,8 +3213,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rrrs[14*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rrrs[14*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -3219,13 +3223,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3249,11 +3256,11 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = rrrs_q_2;
     /* (rrrs-q_3) */
     o[2*count + k] = rrrs_q_3;
-    o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
+    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
 }
 
 INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3273,6 +3280,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         inverse_kinematics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -3284,16 +3292,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, q, t);
         }
@@ -3313,13 +3324,9 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
 }
 
 INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3340,6 +3347,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_rates_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, o_rrrs);
     }
@@ -3351,16 +3359,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qd, t);
         }
@@ -3381,13 +3392,9 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.rrrs_qdd_2;
     /* (rrrs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.rrrs_qdd_3;
-    o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
 }
 
 INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3408,6 +3415,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_accelerations_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
     }
@@ -3419,16 +3427,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, A, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qdd, t);
         }
@@ -3472,12 +3483,8 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
-    o[10*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[9*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 10*count);
 }
 
 INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3504,6 +3511,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             legs_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
         }
@@ -3556,10 +3564,10 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         v.rrrs_h_2_t_20*rrrs_potential_t_6);
     /* (potential) */
     gather(&terms[0*count + k], add, rrrs_potential_t_7);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3579,6 +3587,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             potential_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs,
                 o_rrrs);
@@ -3629,7 +3638,7 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         lesser(lesser(lesser(root(m->inv_rrrs_rho2_2_t[i]*rrrs_pivot_size_2),
         m->inv_rrrs_size[i]*rrrs_pivot_size_3), m->inv_rrrs_size[i]*rrrs_pivot_size_4),
         root(m->inv_rrrs_size_t_3[i]*rrrs_pivot_size));
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rrrs_spread_t = m->b_c_in_platform_x - m->rrrs_platform_point_x[i];
     const real rrrs_spread_t_2 = m->b_c_in_platform_y - m->rrrs_platform_point_y[i];
     const real rrrs_spread_t_3 = m->b_c_in_platform_z - m->rrrs_platform_point_z[i];
@@ -3637,35 +3646,16 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         + rrrs_spread_t_3*rrrs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    any_entries_rrrs(k, count, &v, o);
     /* (rrrs-G) */
     o[12*count + k] = rrrs_least_pivots;
     o[13*count + k] = v.rrrs_h_2_t_17;
+    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
         v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
         v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
         v.rrrs_h_2_t_17)));
-    o[15*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3693,7 +3683,7 @@ INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rrrs = sums[0*w + k];
     const real spread_ = root(spread_rrrs)*m->spread_t;
     /* (spread) */
@@ -3708,6 +3698,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rrrs[LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[17*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         condition_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -3736,8 +3727,8 @@ int hybrid_3rrrs_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3759,8 +3750,8 @@ int hybrid_3rrrs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3783,8 +3774,8 @@ int hybrid_3rrrs_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3806,8 +3797,8 @@ int hybrid_3rrrs_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3830,8 +3821,8 @@ int hybrid_3rrrs_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3856,8 +3847,8 @@ int hybrid_3rrrs_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3887,8 +3878,8 @@ int hybrid_3rrrs_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3902,6 +3893,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -4101,15 +4093,16 @@ int hybrid_3rrrs_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -4154,10 +4147,10 @@ int hybrid_3rrrs_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4165,9 +4158,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && HYBRID_3RRRS_REDUNDANT_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -160,6 +185,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -186,6 +212,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -245,19 +272,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -305,10 +335,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -360,6 +392,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1498,6 +1531,7 @@ APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, rea
         real *restrict other)
 {
     for (size_t j = p; j <= n; ++j) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
             pivot[j*LANES + k] = best[k] == i ? up : down;
@@ -1511,17 +1545,20 @@ INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
     real most[LANES], best[LANES], any = 0;
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
         best[k] = 0;
     }
     for (size_t i = p + 1; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real size = magnitude(a[i*row + p*LANES + k]);
             best[k] = size > most[k] ? (real)i : best[k];
             most[k] = larger(size, most[k]);
         }
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         any += best[k];
     }
@@ -1539,14 +1576,17 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             size[k] = 1/size[k];
         }
         for (size_t j = 0; j <= n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + j*LANES + k] *= size[k];
             }
@@ -1555,6 +1595,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t p = 0; p < n; ++p) {
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
@@ -1562,10 +1603,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         for (size_t i = p + 1; i < n; ++i) {
             real *const other = a + i*row;
             real factor[LANES];
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 factor[k] = other[p*LANES + k]*x[p*LANES + k];
             }
             for (size_t j = p + 1; j <= n; ++j) {
+                SHORT_IN_VECTORS
                 for (size_t k = 0; k < LANES; ++k) {
                     other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
                 }
@@ -1573,10 +1616,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = n; p-- > 0;) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             x[p*LANES + k] *= a[p*row + n*LANES + k];
         }
         for (size_t i = 0; i < p; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
             }
@@ -1800,6 +1845,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1816,6 +1862,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1825,6 +1872,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1851,6 +1899,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1881,6 +1930,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -2217,13 +2267,13 @@ typedef struct {
         rrrrs_f_3_t_4, rrrrs_f_3_t_5, rrrrs_mu_4_t, rrrrs_mu_4_t_2, rrrrs_mu_4_t_3, rrrrs_mu_3_t,
         rrrrs_mu_3_t_2, rrrrs_mu_3_t_3, rrrrs_mu_2_t_2, rrrrs_mu_2_t_3, rrrrs_mu_2_t_4, rrrrs_c_t,
         rrrrs_c_t_2, rrrrs_c_t_3, rrrrs_S_ddot_in_axes4_x, rrrrs_S_ddot_in_axes4_y,
-        rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3, rrrrs_qdd_4, rrrrs_Q_xx, rrrrs_Q_yy,
+        rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3, rrrrs_qdd_4, rrrrs_U_x, rrrrs_U_y,
+        rrrrs_U_z, rrrrs_P_2_o, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3, rrrrs_Q_xx, rrrrs_Q_yy,
         rrrrs_Q_t_13, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yz, rrrrs_d_P_2_x, rrrrs_d_P_2_y, rrrrs_d_P_2_z,
         rrrrs_dy_2_P_2, rrrrs_M_ta_t, rrrrs_M_ta_t_2, rrrrs_M_ta_t_3, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6,
         rrrrs_M_ta_t_7, rrrrs_M_ta_t_8, rrrrs_M_ta_t_9, rrrrs_M_aa_t, rrrrs_M_aa_t_2, rrrrs_M_aa_t_3,
         rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6, rrrrs_M_ya_2_x, rrrrs_M_ya_2_y,
-        rrrrs_M_ya_2_z, rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_P_2_o, rrrrs_Z_a_t, rrrrs_Z_a_t_2,
-        rrrrs_Z_a_t_3, rrrrs_alpha_1_in_axes2_x, rrrrs_alpha_1_in_axes2_y, rrrrs_B_2_in_axes2_xy,
+        rrrrs_M_ya_2_z, rrrrs_alpha_1_in_axes2_x, rrrrs_alpha_1_in_axes2_y, rrrrs_B_2_in_axes2_xy,
         rrrrs_B_2_in_axes2_yx, rrrrs_B_3_in_axes3_xy, rrrrs_B_3_in_axes3_xz, rrrrs_B_3_in_axes3_yx,
         rrrrs_B_3_in_axes3_yz, rrrrs_acc_3_in_axes3_x, rrrrs_acc_3_in_axes3_y, rrrrs_acc_4_in_axes4_x,
         rrrrs_acc_4_in_axes4_y, rrrrs_acc_4_in_axes4_z, rrrrs_N_3_in_axes3_z, rrrrs_G_in_axes4_y,
@@ -2615,207 +2665,6 @@ INLINE void stage_rrrrs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, c
         v->rrrrs_qdd_3*v->rrrrs_r_3_in_axes4_x);
 }
 
-INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
-{
-    /* (rrrrs-w_4) reciprocal vector 3 */
-    const real rrrrs_w_4_in_axes4_x =
-        -v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
-    /* (rrrrs-D_1_4) inertia of joint 4 along joint 1 */
-    const real rrrrs_D_1_4 = m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_e_1_in_axes4_x +
-        m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_e_1_in_axes4_y;
-    /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
-       about the connection point */
-    const real rrrrs_Jc_3_t = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_t_2 = m->rrrrs_J_4_in_spec4_xx[i]*v->rrrrs_c_4 + rrrrs_Jc_3_t;
-    const real rrrrs_Jc_3_t_3 = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_c_4;
-    const real rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes3_xx = m->rrrrs_J_3_in_spec3_xx[i] +
-        rrrrs_Jc_3_t_4*v->rrrrs_s_4_t + rrrrs_Jc_3_t_2*v->rrrrs_c_4;
-    const real rrrrs_Jc_3_in_axes3_xy = m->rrrrs_J_3_in_spec3_xy[i] +
-        rrrrs_Jc_3_t_4*v->rrrrs_c_4 - rrrrs_Jc_3_t_2*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes3_xz = m->rrrrs_J_3_in_spec3_xz[i] +
-        m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_c_4 + m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes3_yy = m->rrrrs_J_3_in_spec3_yy[i] -
-        v->rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - m->rrrrs_J_4_in_spec4_xx[i]*v->rrrrs_s_4_t) +
-        v->rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_c_4 - rrrrs_Jc_3_t);
-    const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
-        m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_25 -
-        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_26 +
-        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_25;
-    /* (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
-    const real rrrrs_L_c_3_2_in_axes2_z = m->rrrrs_Jc_3_in_axes3_zz[i] +
-        v->rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_L_c_3_2_in_axes1_z = rrrrs_Jc_3_in_axes2_xz*v->rrrrs_h_3_t_6 -
-        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7;
-    /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
-    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2;
-    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_25;
-    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_2_t_6 = m->rrrrs_joint3_offset_x[i]*(m->rrrrs_Jc_2_t[i] +
-        v->rrrrs_h_3_in_axes2_x);
-    const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
-    const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
-        v->rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_25;
-    const real rrrrs_Jc_2_in_axes1_zz =
-        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
-        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_25 -
-        rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_26) - rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
-        v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
-        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
-        v->rrrrs_h_3_t_25*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_25 + rrrrs_Jc_2_t_2) +
-        v->rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_4)));
-    /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-       inertia and weight */
-    const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
-    const real rrrrs_d_Gamma_4_t_2 = m->rrrrs_d_Gamma_4_t[i]*v->rrrrs_r_3_in_axes4_x;
-    const real rrrrs_d_Gamma_4_in_axes4_x =
-        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_J_4_in_spec4_zz[i] - rrrrs_d_Gamma_4_t_2) -
-        m->rrrrs_h_4_in_spec4_y[i];
-    /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-       links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_4_t =
-        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v->rrrrs_r_2_in_axes4_x -
-        v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_t_7);
-    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] +
-        m->rrrrs_J_4_in_spec4_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
-    /* (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real rrrrs_d_Gamma_3_in_axes4_x =
-        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_Jc_3_in_axes3_zz[i] - rrrrs_d_Gamma_4_t_2) -
-        m->rrrrs_h_4_in_spec4_y[i];
-    /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-       links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_3 = rrrrs_L_c_3_2_in_axes2_z +
-        m->rrrrs_Jc_3_in_axes3_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
-    /* (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrrrs_d_Gamma_2_in_axes4_x = v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z
-        - rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
-    /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + m->rrrrs_Jc_3_in_axes3_zz[i]
-        + rrrrs_Jc_2_t_7 + rrrrs_L_c_3_2_in_axes2_z*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
-    /* (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrrrs_d_Gamma_1_t = rrrrs_D_1_4*m->rrrrs_w_4_in_axes4_y[i];
-    const real rrrrs_d_Gamma_1_in_axes4_x = v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i]
-        + v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z -
-        rrrrs_d_Gamma_1_t*v->rrrrs_r_3_in_axes4_x);
-    const real rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t -
-        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i];
-    const real rrrrs_d_Gamma_1_in_axes4_z = v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]
-        - v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] +
-        v->rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz);
-    /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*v->rrrrs_w_1_in_axes4_z;
-    const real rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*v->rrrrs_w_1_in_axes4_z;
-    const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x +
-        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
-    const real rrrrs_d_G_in_axes4_xy =
-        m->rrrrs_d_Gamma_4_in_axes4_y[i]*v->rrrrs_w_3_in_axes4_x +
-        m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x;
-    /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
-       the leg's inertia and weight along all degrees of freedom */
-    const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
-    /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(v->rrrrs_w_3_in_axes4_x +
-        rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
-    const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
-    const real rrrrs_d_c_in_axes4_zz =
-        v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i]*v->rrrrs_w_1_in_axes4_z -
-        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]*v->rrrrs_w_1_in_axes4_z -
-        rrrrs_d_Gamma_1_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
-    /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
-    const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
-    const real rrrrs_Q_t_3 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_zz;
-    const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
-    const real rrrrs_Q_t_5 = v->axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
-        v->axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
-    const real rrrrs_Q_t_6 = v->axis_z_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zy -
-        v->axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
-    const real rrrrs_Q_t_7 = v->axis_z_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zy -
-        v->axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
-    const real rrrrs_Q_t_8 = v->axis_x_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zx +
-        v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_4;
-    const real rrrrs_Q_t_9 = v->axis_x_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zx +
-        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_4;
-    const real rrrrs_Q_t_10 = v->axis_x_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zx +
-        v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_4;
-    const real rrrrs_Q_t_11 = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 +
-        v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
-    v->rrrrs_Q_xx = 2*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx;
-    const real rrrrs_Q_t_12 = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 +
-        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
-    v->rrrrs_Q_yy = 2*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx;
-    v->rrrrs_Q_t_13 = m->rrrrs_d_c_in_axes4_yy[i] + rrrrs_d_c_in_axes4_xx +
-        rrrrs_d_c_in_axes4_zz + v->rrrrs_Q_xx + v->rrrrs_Q_yy;
-    v->rrrrs_Q_xy = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_5
-        + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_8;
-    v->rrrrs_Q_xz = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_5
-        + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_8;
-    v->rrrrs_Q_yz = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
-        + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_9;
-    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 2 */
-    const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x -
-        rrrrs_d_Gamma_4_in_axes4_x*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i] +
-        rrrrs_d_G_in_axes4_xx*v->rrrrs_r_2_in_axes4_y;
-    const real rrrrs_d_P_2_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i] -
-        m->rrrrs_d_G_in_axes4_yy[i]*v->rrrrs_r_2_in_axes4_x +
-        rrrrs_d_G_in_axes4_xy*v->rrrrs_r_2_in_axes4_y;
-    const real rrrrs_d_P_2_in_axes4_z =
-        v->rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
-        m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
-        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
-        v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-        rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z*v->rrrrs_w_3_in_axes4_x) -
-        rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
-    v->rrrrs_d_P_2_x = v->axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x +
-        v->axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y +
-        v->axis_z_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_z;
-    v->rrrrs_d_P_2_y = v->axis_x_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_x +
-        v->axis_y_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_y +
-        v->axis_z_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_z;
-    v->rrrrs_d_P_2_z = v->axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x +
-        v->axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y +
-        v->axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z;
-    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 2 */
-    const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_2_in_axes4_x +
-        v->rrrrs_r_2_in_axes4_y*v->rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x
-        - rrrrs_dy_2_Gamma_3);
-    v->rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
-    /* (M_ta) coupling block of M */
-    v->rrrrs_M_ta_t = v->rrrrs_Q_xx*v->rrrrs_q_z - v->rrrrs_Q_xz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_2 = v->rrrrs_Q_xy*v->rrrrs_q_x - v->rrrrs_Q_xx*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_3 = v->rrrrs_Q_yy*v->rrrrs_q_z - v->rrrrs_Q_yz*v->rrrrs_q_y;
-    const real rrrrs_M_ta_t_4 = v->rrrrs_Q_yz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_5 = v->rrrrs_Q_xy*v->rrrrs_q_z - rrrrs_M_ta_t_4;
-    v->rrrrs_M_ta_t_6 = v->rrrrs_Q_yy*v->rrrrs_q_x - v->rrrrs_Q_xy*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_7 = v->rrrrs_Q_yz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_y;
-    v->rrrrs_M_ta_t_8 = v->rrrrs_Q_xz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_9 = rrrrs_M_ta_t_4 - v->rrrrs_Q_xz*v->rrrrs_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrrrs_M_aa_t = v->rrrrs_M_ta_t_3*v->rrrrs_q_z - v->rrrrs_M_ta_t_7*v->rrrrs_q_y;
-    v->rrrrs_M_aa_t_2 = v->rrrrs_M_ta_t_8*v->rrrrs_q_y - v->rrrrs_M_ta_t_5*v->rrrrs_q_z;
-    v->rrrrs_M_aa_t_3 = v->rrrrs_M_ta_t_9*v->rrrrs_q_y - v->rrrrs_M_ta_t_6*v->rrrrs_q_z;
-    v->rrrrs_M_aa_t_4 = v->rrrrs_M_ta_t*v->rrrrs_q_z - v->rrrrs_M_ta_t_8*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_2*v->rrrrs_q_z - v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_6*v->rrrrs_q_x - v->rrrrs_M_ta_t_2*v->rrrrs_q_y;
-    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-    v->rrrrs_M_ya_2_x = v->rrrrs_d_P_2_z*v->rrrrs_q_y - v->rrrrs_d_P_2_y*v->rrrrs_q_z;
-    v->rrrrs_M_ya_2_y = v->rrrrs_d_P_2_x*v->rrrrs_q_z - v->rrrrs_d_P_2_z*v->rrrrs_q_x;
-    v->rrrrs_M_ya_2_z = v->rrrrs_d_P_2_y*v->rrrrs_q_x - v->rrrrs_d_P_2_x*v->rrrrs_q_y;
-}
-
 INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
 {
     /* (rrrrs-u_1) centripetal acceleration of the connection point */
@@ -3033,6 +2882,207 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     v->rrrrs_Z_a_t_3 = v->rrrrs_U_y*v->rrrrs_q_x - v->rrrrs_U_x*v->rrrrs_q_y;
 }
 
+INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
+{
+    /* (rrrrs-w_4) reciprocal vector 3 */
+    const real rrrrs_w_4_in_axes4_x =
+        -v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
+    /* (rrrrs-D_1_4) inertia of joint 4 along joint 1 */
+    const real rrrrs_D_1_4 = m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_e_1_in_axes4_x +
+        m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_e_1_in_axes4_y;
+    /* (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
+       about the connection point */
+    const real rrrrs_Jc_3_t = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_s_4_t;
+    const real rrrrs_Jc_3_t_2 = m->rrrrs_J_4_in_spec4_xx[i]*v->rrrrs_c_4 + rrrrs_Jc_3_t;
+    const real rrrrs_Jc_3_t_3 = m->rrrrs_J_4_in_spec4_xy[i]*v->rrrrs_c_4;
+    const real rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xx = m->rrrrs_J_3_in_spec3_xx[i] +
+        rrrrs_Jc_3_t_4*v->rrrrs_s_4_t + rrrrs_Jc_3_t_2*v->rrrrs_c_4;
+    const real rrrrs_Jc_3_in_axes3_xy = m->rrrrs_J_3_in_spec3_xy[i] +
+        rrrrs_Jc_3_t_4*v->rrrrs_c_4 - rrrrs_Jc_3_t_2*v->rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_xz = m->rrrrs_J_3_in_spec3_xz[i] +
+        m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_c_4 + m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes3_yy = m->rrrrs_J_3_in_spec3_yy[i] -
+        v->rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - m->rrrrs_J_4_in_spec4_xx[i]*v->rrrrs_s_4_t) +
+        v->rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_c_4 - rrrrs_Jc_3_t);
+    const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
+        m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_s_4_t;
+    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_25 -
+        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_26 +
+        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_25;
+    /* (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
+    const real rrrrs_L_c_3_2_in_axes2_z = m->rrrrs_Jc_3_in_axes3_zz[i] +
+        v->rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_L_c_3_2_in_axes1_z = rrrrs_Jc_3_in_axes2_xz*v->rrrrs_h_3_t_6 -
+        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7;
+    /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2;
+    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_25;
+    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_2_t_6 = m->rrrrs_joint3_offset_x[i]*(m->rrrrs_Jc_2_t[i] +
+        v->rrrrs_h_3_in_axes2_x);
+    const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
+    const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
+        v->rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] +
+        rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_25;
+    const real rrrrs_Jc_2_in_axes1_zz =
+        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
+        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_25 -
+        rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_26) - rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
+        v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
+        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
+        v->rrrrs_h_3_t_25*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_25 + rrrrs_Jc_2_t_2) +
+        v->rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_4)));
+    /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
+    const real rrrrs_d_Gamma_4_t_2 = m->rrrrs_d_Gamma_4_t[i]*v->rrrrs_r_3_in_axes4_x;
+    const real rrrrs_d_Gamma_4_in_axes4_x =
+        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_J_4_in_spec4_zz[i] - rrrrs_d_Gamma_4_t_2) -
+        m->rrrrs_h_4_in_spec4_y[i];
+    /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_4_t =
+        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v->rrrrs_r_2_in_axes4_x -
+        v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_t_7);
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] +
+        m->rrrrs_J_4_in_spec4_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
+    /* (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rrrrs_d_Gamma_3_in_axes4_x =
+        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_Jc_3_in_axes3_zz[i] - rrrrs_d_Gamma_4_t_2) -
+        m->rrrrs_h_4_in_spec4_y[i];
+    /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_3 = rrrrs_L_c_3_2_in_axes2_z +
+        m->rrrrs_Jc_3_in_axes3_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
+    /* (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrrrs_d_Gamma_2_in_axes4_x = v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z
+        - rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
+    /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + m->rrrrs_Jc_3_in_axes3_zz[i]
+        + rrrrs_Jc_2_t_7 + rrrrs_L_c_3_2_in_axes2_z*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
+    /* (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrrrs_d_Gamma_1_t = rrrrs_D_1_4*m->rrrrs_w_4_in_axes4_y[i];
+    const real rrrrs_d_Gamma_1_in_axes4_x = v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i]
+        + v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z -
+        rrrrs_d_Gamma_1_t*v->rrrrs_r_3_in_axes4_x);
+    const real rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t -
+        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i];
+    const real rrrrs_d_Gamma_1_in_axes4_z = v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]
+        - v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i] +
+        v->rrrrs_w_1_in_axes4_z*(m->rrrrs_J_1_in_spec1_xx[i] + rrrrs_Jc_2_in_axes1_zz);
+    /* (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*v->rrrrs_w_1_in_axes4_z;
+    const real rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*v->rrrrs_w_1_in_axes4_z;
+    const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x +
+        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
+    const real rrrrs_d_G_in_axes4_xy =
+        m->rrrrs_d_Gamma_4_in_axes4_y[i]*v->rrrrs_w_3_in_axes4_x +
+        m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x;
+    /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
+    /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(v->rrrrs_w_3_in_axes4_x +
+        rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
+    const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
+    const real rrrrs_d_c_in_axes4_zz =
+        v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i]*v->rrrrs_w_1_in_axes4_z -
+        v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_y[i]*v->rrrrs_w_1_in_axes4_z -
+        rrrrs_d_Gamma_1_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
+    /* (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - m->rrrrs_d_c_in_axes4_yy[i];
+    const real rrrrs_Q_t_2 = R(0.5)*rrrrs_Q_t;
+    const real rrrrs_Q_t_3 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_zz;
+    const real rrrrs_Q_t_4 = R(0.5)*rrrrs_Q_t_3;
+    const real rrrrs_Q_t_5 = v->axis_z_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zy -
+        v->axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_6 = v->axis_z_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zy -
+        v->axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_7 = v->axis_z_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zy -
+        v->axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_2;
+    const real rrrrs_Q_t_8 = v->axis_x_rrrrs_axes4_x*rrrrs_d_G_in_axes4_zx +
+        v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_4;
+    const real rrrrs_Q_t_9 = v->axis_x_rrrrs_axes4_y*rrrrs_d_G_in_axes4_zx +
+        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_4;
+    const real rrrrs_Q_t_10 = v->axis_x_rrrrs_axes4_z*rrrrs_d_G_in_axes4_zx +
+        v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_4;
+    const real rrrrs_Q_t_11 = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 +
+        v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_8;
+    v->rrrrs_Q_xx = 2*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx;
+    const real rrrrs_Q_t_12 = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 +
+        v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_9;
+    v->rrrrs_Q_yy = 2*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx;
+    v->rrrrs_Q_t_13 = m->rrrrs_d_c_in_axes4_yy[i] + rrrrs_d_c_in_axes4_xx +
+        rrrrs_d_c_in_axes4_zz + v->rrrrs_Q_xx + v->rrrrs_Q_yy;
+    v->rrrrs_Q_xy = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 + v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_5
+        + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_8;
+    v->rrrrs_Q_xz = v->axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_5
+        + v->axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_8;
+    v->rrrrs_Q_yz = v->axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 + v->axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
+        + v->axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + v->axis_z_rrrrs_axes4_z*rrrrs_Q_t_9;
+    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 2 */
+    const real rrrrs_d_P_2_in_axes4_x = rrrrs_d_Gamma_2_in_axes4_x -
+        rrrrs_d_Gamma_4_in_axes4_x*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i] +
+        rrrrs_d_G_in_axes4_xx*v->rrrrs_r_2_in_axes4_y;
+    const real rrrrs_d_P_2_in_axes4_y = m->rrrrs_d_Gamma_4_in_axes4_y[i] -
+        m->rrrrs_d_G_in_axes4_yy[i]*v->rrrrs_r_2_in_axes4_x +
+        rrrrs_d_G_in_axes4_xy*v->rrrrs_r_2_in_axes4_y;
+    const real rrrrs_d_P_2_in_axes4_z =
+        v->rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
+        m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
+        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
+        v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+        rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z*v->rrrrs_w_3_in_axes4_x) -
+        rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
+    v->rrrrs_d_P_2_x = v->axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x +
+        v->axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y +
+        v->axis_z_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_z;
+    v->rrrrs_d_P_2_y = v->axis_x_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_x +
+        v->axis_y_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_y +
+        v->axis_z_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_z;
+    v->rrrrs_d_P_2_z = v->axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x +
+        v->axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y +
+        v->axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z;
+    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 2 */
+    const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_2_in_axes4_x +
+        v->rrrrs_r_2_in_axes4_y*v->rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x
+        - rrrrs_dy_2_Gamma_3);
+    v->rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
+    /* (M_ta) coupling block of M */
+    v->rrrrs_M_ta_t = v->rrrrs_Q_xx*v->rrrrs_q_z - v->rrrrs_Q_xz*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_2 = v->rrrrs_Q_xy*v->rrrrs_q_x - v->rrrrs_Q_xx*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_3 = v->rrrrs_Q_yy*v->rrrrs_q_z - v->rrrrs_Q_yz*v->rrrrs_q_y;
+    const real rrrrs_M_ta_t_4 = v->rrrrs_Q_yz*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_5 = v->rrrrs_Q_xy*v->rrrrs_q_z - rrrrs_M_ta_t_4;
+    v->rrrrs_M_ta_t_6 = v->rrrrs_Q_yy*v->rrrrs_q_x - v->rrrrs_Q_xy*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_7 = v->rrrrs_Q_yz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_8 = v->rrrrs_Q_xz*v->rrrrs_q_z + v->rrrrs_Q_t_13*v->rrrrs_q_x;
+    v->rrrrs_M_ta_t_9 = rrrrs_M_ta_t_4 - v->rrrrs_Q_xz*v->rrrrs_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrrrs_M_aa_t = v->rrrrs_M_ta_t_3*v->rrrrs_q_z - v->rrrrs_M_ta_t_7*v->rrrrs_q_y;
+    v->rrrrs_M_aa_t_2 = v->rrrrs_M_ta_t_8*v->rrrrs_q_y - v->rrrrs_M_ta_t_5*v->rrrrs_q_z;
+    v->rrrrs_M_aa_t_3 = v->rrrrs_M_ta_t_9*v->rrrrs_q_y - v->rrrrs_M_ta_t_6*v->rrrrs_q_z;
+    v->rrrrs_M_aa_t_4 = v->rrrrs_M_ta_t*v->rrrrs_q_z - v->rrrrs_M_ta_t_8*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_2*v->rrrrs_q_z - v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_6*v->rrrrs_q_x - v->rrrrs_M_ta_t_2*v->rrrrs_q_y;
+    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
+    v->rrrrs_M_ya_2_x = v->rrrrs_d_P_2_z*v->rrrrs_q_y - v->rrrrs_d_P_2_y*v->rrrrs_q_z;
+    v->rrrrs_M_ya_2_y = v->rrrrs_d_P_2_x*v->rrrrs_q_z - v->rrrrs_d_P_2_z*v->rrrrs_q_x;
+    v->rrrrs_M_ya_2_z = v->rrrrs_d_P_2_y*v->rrrrs_q_x - v->rrrrs_d_P_2_x*v->rrrrs_q_y;
+}
+
 INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
     *A, values_rrrrs *v)
 {
@@ -3201,12 +3251,12 @@ typedef struct {
         rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
         rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
         rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
-        rrrs_qdd_2, rrrs_qdd_3, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
-        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
-        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
-        rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-        rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z,
-        rrrs_c_in_axes3_x, rrrs_c_in_axes3_y, rrrs_c_in_axes3_z;
+        rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
+        rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x,
+        rrrs_c_in_axes3_y, rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz,
+        rrrs_Q_yz, rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
+        rrrs_M_ta_t_7, rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3,
+        rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -3484,119 +3534,6 @@ INLINE void stage_rrrs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, co
         v->rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
 }
 
-INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
-{
-    /* (rrrs-w_3) reciprocal vector 3 */
-    const real rrrs_w_3_in_axes3_x =
-        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
-    /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-    const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
-        m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
-    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-       about the connection point */
-    const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
-    const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
-    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
-        - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes1_zz =
-        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
-        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
-        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
-        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
-        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
-    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
-    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
-        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
-    /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_Jc_2_in_axes2_zz[i]
-        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
-    /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
-    const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
-        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
-        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
-        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
-        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
-    const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
-    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
-        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
-    /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
-    const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
-        rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
-        rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
-        m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
-        m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
-    const real rrrs_d_c_in_axes3_zz =
-        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
-        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
-        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
-    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
-    const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
-    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-    const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-    const real rrrs_Q_t_6 = v->axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-    const real rrrs_Q_t_7 = v->axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
-        v->axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_z*rrrs_Q_t_2;
-    const real rrrs_Q_t_8 = v->axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_4;
-    const real rrrs_Q_t_9 = v->axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_4;
-    const real rrrs_Q_t_10 = v->axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx +
-        v->axis_z_rrrs_axes3_z*rrrs_Q_t_4;
-    const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-    v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
-    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
-    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
-        + v->rrrs_Q_xx + v->rrrs_Q_yy;
-    v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
-    v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
-        v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
-    v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
-        v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
-    /* (M_ta) coupling block of M */
-    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
-    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
-    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
-    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
-    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
-    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
-    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
-    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
-    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
-    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
-    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
-    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
-    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
-}
-
 INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
     values_rrrs *v)
 {
@@ -3833,6 +3770,119 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
 }
 
+INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
+{
+    /* (rrrs-w_3) reciprocal vector 3 */
+    const real rrrs_w_3_in_axes3_x =
+        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*m->rrrs_w_3_in_axes3_y[i];
+    /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
+    const real rrrs_D_1_3 = m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_e_1_in_axes3_x +
+        m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_e_1_in_axes3_y;
+    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real rrrs_Jc_2_t = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_t_2 = m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_c_3 + rrrs_Jc_2_t;
+    const real rrrs_Jc_2_t_3 = m->rrrs_J_3_in_spec3_xy[i]*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
+        - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
+    const real rrrs_Jc_2_in_axes1_zz =
+        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
+        rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
+        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
+        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
+        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
+        v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
+    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_3_t_2 = m->rrrs_d_Gamma_3_t[i]*v->rrrs_r_2_in_axes3_x;
+    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_J_3_in_spec3_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(m->rrrs_Jc_2_in_axes2_zz[i]
+        - rrrs_d_Gamma_3_t_2) - m->rrrs_h_3_in_spec3_y[i];
+    /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
+    const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
+        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
+        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
+        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
+        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
+    const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i] +
+        v->rrrs_w_1_in_axes3_z*(m->rrrs_J_1_in_spec1_xx[i] + rrrs_Jc_2_in_axes1_zz);
+    /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rrrs_d_G_in_axes3_zx = rrrs_d_Gamma_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
+    const real rrrs_d_G_in_axes3_zy = rrrs_d_Gamma_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrrs_d_c_in_axes3_xx = m->rrrs_h_3_in_spec3_y[i]*(v->rrrs_w_2_in_axes3_x +
+        rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
+        rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_xy = m->rrrs_d_phi_3_t[i] -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*v->rrrs_w_2_in_axes3_x -
+        m->rrrs_d_Gamma_3_in_axes3_y[i]*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_c_in_axes3_zz =
+        v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_x[i]*v->rrrs_w_1_in_axes3_z -
+        rrrs_d_Gamma_1_in_axes3_z*v->rrrs_w_1_in_axes3_z -
+        v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i]*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - m->rrrs_d_c_in_axes3_yy[i];
+    const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
+    const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_zz;
+    const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
+    const real rrrs_Q_t_5 = v->axis_z_rrrs_axes3_x*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+    const real rrrs_Q_t_6 = v->axis_z_rrrs_axes3_y*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+    const real rrrs_Q_t_7 = v->axis_z_rrrs_axes3_z*rrrs_d_G_in_axes3_zy -
+        v->axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + v->axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+    const real rrrs_Q_t_8 = v->axis_x_rrrs_axes3_x*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_4;
+    const real rrrs_Q_t_9 = v->axis_x_rrrs_axes3_y*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_4;
+    const real rrrs_Q_t_10 = v->axis_x_rrrs_axes3_z*rrrs_d_G_in_axes3_zx +
+        v->axis_z_rrrs_axes3_z*rrrs_Q_t_4;
+    const real rrrs_Q_t_11 = v->axis_y_rrrs_axes3_x*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_8;
+    v->rrrs_Q_xx = 2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
+    const real rrrs_Q_t_12 = v->axis_y_rrrs_axes3_y*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+    v->rrrs_Q_yy = 2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
+    v->rrrs_Q_t_13 = m->rrrs_d_c_in_axes3_yy[i] + rrrs_d_c_in_axes3_xx + rrrs_d_c_in_axes3_zz
+        + v->rrrs_Q_xx + v->rrrs_Q_yy;
+    v->rrrs_Q_xy = v->axis_y_rrrs_axes3_x*rrrs_Q_t_6 + v->axis_y_rrrs_axes3_y*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v->axis_z_rrrs_axes3_y*rrrs_Q_t_8;
+    v->rrrs_Q_xz = v->axis_y_rrrs_axes3_x*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_5 +
+        v->axis_z_rrrs_axes3_x*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_8;
+    v->rrrs_Q_yz = v->axis_y_rrrs_axes3_y*rrrs_Q_t_7 + v->axis_y_rrrs_axes3_z*rrrs_Q_t_6 +
+        v->axis_z_rrrs_axes3_y*rrrs_Q_t_10 + v->axis_z_rrrs_axes3_z*rrrs_Q_t_9;
+    /* (M_ta) coupling block of M */
+    v->rrrs_M_ta_t = v->rrrs_Q_xx*v->rrrs_q_z - v->rrrs_Q_xz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_2 = v->rrrs_Q_xx*v->rrrs_q_y - v->rrrs_Q_xy*v->rrrs_q_x;
+    v->rrrs_M_ta_t_3 = v->rrrs_Q_yy*v->rrrs_q_z - v->rrrs_Q_yz*v->rrrs_q_y;
+    const real rrrs_M_ta_t_4 = v->rrrs_Q_yz*v->rrrs_q_x;
+    v->rrrs_M_ta_t_5 = v->rrrs_Q_xy*v->rrrs_q_z - rrrs_M_ta_t_4;
+    v->rrrs_M_ta_t_6 = v->rrrs_Q_yy*v->rrrs_q_x - v->rrrs_Q_xy*v->rrrs_q_y;
+    v->rrrs_M_ta_t_7 = v->rrrs_Q_yz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_y;
+    v->rrrs_M_ta_t_8 = v->rrrs_Q_xz*v->rrrs_q_z + v->rrrs_Q_t_13*v->rrrs_q_x;
+    v->rrrs_M_ta_t_9 = rrrs_M_ta_t_4 - v->rrrs_Q_xz*v->rrrs_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrrs_M_aa_t = v->rrrs_M_ta_t_3*v->rrrs_q_z - v->rrrs_M_ta_t_7*v->rrrs_q_y;
+    v->rrrs_M_aa_t_2 = v->rrrs_M_ta_t_8*v->rrrs_q_y - v->rrrs_M_ta_t_5*v->rrrs_q_z;
+    v->rrrs_M_aa_t_3 = v->rrrs_M_ta_t_9*v->rrrs_q_y - v->rrrs_M_ta_t_6*v->rrrs_q_z;
+    v->rrrs_M_aa_t_4 = v->rrrs_M_ta_t*v->rrrs_q_z - v->rrrs_M_ta_t_8*v->rrrs_q_x;
+    v->rrrs_M_aa_t_5 = v->rrrs_M_ta_t_2*v->rrrs_q_z + v->rrrs_M_ta_t_9*v->rrrs_q_x;
+    v->rrrs_M_aa_t_6 = v->rrrs_M_ta_t_2*v->rrrs_q_y + v->rrrs_M_ta_t_6*v->rrrs_q_x;
+}
+
 INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     status_flags *t)
 {
@@ -3876,6 +3926,148 @@ INLINE void any_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count
     t->unreachable[k] += o[12*count + at];
     t->singular[k] += o[13*count + at];
     t->total[k] += o[14*count + at];
+}
+
+INLINE void any_sums_rrrrs(size_t k, size_t count, int add, const values_rrrrs *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrrrs_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrrrs_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrrrs_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->rrrrs_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->rrrrs_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
+    gather(&terms[7*count + k], add, v->rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
+    gather(&terms[8*count + k], add, v->rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, -v->rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, -v->rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrrrs_2(size_t k, size_t count, int add, const values_rrrrs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->rrrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->rrrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrrrs(size_t k, size_t count, const values_rrrrs *v, real *o)
+{
+    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 2 */
+    o[0*count + k] = v->rrrrs_P_2_o;
+}
+
+INLINE void any_entries_rrrrs_2(size_t k, size_t count, const values_rrrrs *v, real *o)
+{
+    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 2 */
+    o[0*count + k] = v->rrrrs_d_P_2_x;
+    o[1*count + k] = v->rrrrs_d_P_2_x;
+    o[2*count + k] = v->rrrrs_d_P_2_y;
+    o[3*count + k] = v->rrrrs_d_P_2_y;
+    o[4*count + k] = v->rrrrs_d_P_2_z;
+    o[5*count + k] = v->rrrrs_d_P_2_z;
+    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
+    o[6*count + k] = v->rrrrs_M_ya_2_x;
+    o[7*count + k] = v->rrrrs_M_ya_2_x;
+    o[8*count + k] = v->rrrrs_M_ya_2_y;
+    o[9*count + k] = v->rrrrs_M_ya_2_y;
+    o[10*count + k] = v->rrrrs_M_ya_2_z;
+    o[11*count + k] = v->rrrrs_M_ya_2_z;
+    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 2 */
+    o[12*count + k] = v->rrrrs_dy_2_P_2;
+}
+
+INLINE void any_entries_rrrrs_3(size_t k, size_t count, const values_rrrrs *v, real *o)
+{
+    /* (rrrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrrrs_w_1_x;
+    o[1*count + k] = v->rrrrs_w_1_y;
+    o[2*count + k] = v->rrrrs_w_1_z;
+    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->rrrrs_H_a_1_x;
+    o[4*count + k] = v->rrrrs_H_a_1_y;
+    o[5*count + k] = v->rrrrs_H_a_1_z;
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[6*count + k] = 1;
+    /* (rrrrs-w_3) reciprocal vector 2 */
+    o[7*count + k] = v->rrrrs_w_3_x;
+    o[8*count + k] = v->rrrrs_w_3_y;
+    o[9*count + k] = v->rrrrs_w_3_z;
+    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
+    o[10*count + k] = v->rrrrs_H_a_3_x;
+    o[11*count + k] = v->rrrrs_H_a_3_y;
+    o[12*count + k] = v->rrrrs_H_a_3_z;
+    /* (rrrrs-w_3) */
+    o[13*count + k] = v->rrrrs_w_3_t_7;
+}
+
+INLINE void any_singular_rrrrs(const prepared *m, size_t i, size_t k, const values_rrrrs *v, real
+    *o)
+{
+    o[k] = UNLESS(magnitude(v->rrrrs_h_3_t_11) > TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrrs_h_3_t_22) > TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) +
+        UNLESS(magnitude(v->rrrrs_v_1_in_axes4_z) > TOLERANCE*m->rrrrs_size[i]) +
+        UNLESS(magnitude(v->rrrrs_r_3_in_axes4_y) > TOLERANCE*m->rrrrs_size[i]);
+}
+
+INLINE void any_sums_rrrs(size_t k, size_t count, int add, const values_rrrs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrrs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrrs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->rrrs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->rrrs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real *o)
+{
+    /* (rrrs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrrs_w_1_x;
+    o[1*count + k] = v->rrrs_w_1_y;
+    o[2*count + k] = v->rrrs_w_1_z;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->rrrs_H_a_1_x;
+    o[4*count + k] = v->rrrs_H_a_1_y;
+    o[5*count + k] = v->rrrs_H_a_1_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    o[6*count + k] = v->rrrs_w_2_x;
+    o[7*count + k] = v->rrrs_w_2_y;
+    o[8*count + k] = v->rrrs_w_2_z;
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v->rrrs_H_a_2_x;
+    o[10*count + k] = v->rrrs_H_a_2_y;
+    o[11*count + k] = v->rrrs_H_a_2_z;
+}
+
+INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const values_rrrs *v, real
+    *o)
+{
+    o[k] = UNLESS(magnitude(v->rrrs_h_2_t_9) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrs_h_2_t_16) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
+        UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
+        UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
 }
 
 INLINE void any_place_rrrs_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -3949,92 +4141,21 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     stage_rrrrs_V(w, j, V, &v);
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     stage_rrrrs_V_X(m, w, i, j, V, &v);
-    stage_rrrrs_M_dynamics(m, i, &v);
     stage_rrrrs_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
-    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
-    gather(&terms[8*count + k], add, v.rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, -v.rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.rrrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.rrrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.rrrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.rrrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 2 */
-    o[0*count + k] = v.rrrrs_P_2_o;
-    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 2 */
-    o[1*count + k] = v.rrrrs_d_P_2_x;
-    o[2*count + k] = v.rrrrs_d_P_2_x;
-    o[3*count + k] = v.rrrrs_d_P_2_y;
-    o[4*count + k] = v.rrrrs_d_P_2_y;
-    o[5*count + k] = v.rrrrs_d_P_2_z;
-    o[6*count + k] = v.rrrrs_d_P_2_z;
-    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-    o[7*count + k] = v.rrrrs_M_ya_2_x;
-    o[8*count + k] = v.rrrrs_M_ya_2_x;
-    o[9*count + k] = v.rrrrs_M_ya_2_y;
-    o[10*count + k] = v.rrrrs_M_ya_2_y;
-    o[11*count + k] = v.rrrrs_M_ya_2_z;
-    o[12*count + k] = v.rrrrs_M_ya_2_z;
-    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 2 */
-    o[13*count + k] = v.rrrrs_dy_2_P_2;
-    /* (rrrrs-w_1) reciprocal vector 1 */
-    o[14*count + k] = v.rrrrs_w_1_x;
-    o[15*count + k] = v.rrrrs_w_1_y;
-    o[16*count + k] = v.rrrrs_w_1_z;
-    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[17*count + k] = v.rrrrs_H_a_1_x;
-    o[18*count + k] = v.rrrrs_H_a_1_y;
-    o[19*count + k] = v.rrrrs_H_a_1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[20*count + k] = 1;
-    /* (rrrrs-w_3) reciprocal vector 2 */
-    o[21*count + k] = v.rrrrs_w_3_x;
-    o[22*count + k] = v.rrrrs_w_3_y;
-    o[23*count + k] = v.rrrrs_w_3_z;
-    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-    o[24*count + k] = v.rrrrs_H_a_3_x;
-    o[25*count + k] = v.rrrrs_H_a_3_y;
-    o[26*count + k] = v.rrrrs_H_a_3_z;
-    /* (rrrrs-w_3) */
-    o[27*count + k] = v.rrrrs_w_3_t_7;
+    stage_rrrrs_M_dynamics(m, i, &v);
+    any_sums_rrrrs(k, count, add, &v, terms);
+    any_sums_rrrrs_2(k, count, add, &v, terms + 20*count);
+    any_entries_rrrrs(k, count, &v, o);
+    any_entries_rrrrs_2(k, count, &v, o + 1*count);
+    any_entries_rrrrs_3(k, count, &v, o + 14*count);
+    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 29*count);
     o[30*count + k] = (((v.rrrrs_P_2_o + v.rrrrs_d_P_2_x) + (v.rrrrs_d_P_2_y +
         (v.rrrrs_d_P_2_z + v.rrrrs_M_ya_2_x))) + ((v.rrrrs_M_ya_2_y + v.rrrrs_M_ya_2_z) +
         (v.rrrrs_dy_2_P_2 + (v.rrrrs_w_1_x + v.rrrrs_w_1_y)))) + (((v.rrrrs_w_1_z +
         v.rrrrs_H_a_1_x) + (v.rrrrs_H_a_1_y + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) +
         ((v.rrrrs_w_3_y + (v.rrrrs_w_3_z + v.rrrrs_H_a_3_x)) + (v.rrrrs_H_a_3_y +
         (v.rrrrs_H_a_3_z + v.rrrrs_w_3_t_7))));
-    o[29*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
-    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void dynamics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4079,8 +4200,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
-    stage_rrrs_M_dynamics(m, i, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
+    stage_rrrs_M_dynamics(m, i, &v);
     /* (M_tt) */
     gather(&terms[0*count + k], add, v.rrrs_Q_xx);  /* M_tt_xx_of_legs */
     gather(&terms[1*count + k], add, v.rrrs_Q_xy);  /* M_tt_xy */
@@ -4104,52 +4225,26 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
     gather(&terms[31*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[20*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[23*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    any_sums_rrrs(k, count, add, &v, terms + 20*count);
+    any_entries_rrrs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_rrrrs_yy = sums[6*w + k];
     const real M_ta_rrrrs_zz = sums[7*w + k];
     const real M_ta_rrrs_yy = sums[26*w + k];
@@ -4175,7 +4270,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -4195,7 +4290,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -4205,7 +4300,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -4280,9 +4375,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     clear(H, NV*NU);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         dynamics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         dynamics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -4307,10 +4404,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[32*LANES];
-    real o_rrrrs[31*LANES];
-    real o_rrrs[15*LANES];
+    ALIGNED real s[33*LANES], sums[32*LANES];
+    ALIGNED real o_rrrrs[31*LANES];
+    ALIGNED real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -4318,21 +4416,26 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 32*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_rrrrs(LANES, k, k, LANES, o_rrrrs, M, Z, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -4345,55 +4448,12 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     values_rrrrs v;
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     stage_rrrrs_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrrrs_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrrrs_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrrrs_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.rrrrs_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.rrrrs_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.rrrrs_Q_t_13);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.rrrrs_M_ta_t_5);  /* M_ta_rrrrs_yy */
-    gather(&terms[7*count + k], add, v.rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
-    gather(&terms[8*count + k], add, v.rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, -v.rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, -v.rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.rrrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.rrrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.rrrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.rrrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.rrrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 2 */
-    o[0*count + k] = v.rrrrs_d_P_2_x;
-    o[1*count + k] = v.rrrrs_d_P_2_x;
-    o[2*count + k] = v.rrrrs_d_P_2_y;
-    o[3*count + k] = v.rrrrs_d_P_2_y;
-    o[4*count + k] = v.rrrrs_d_P_2_z;
-    o[5*count + k] = v.rrrrs_d_P_2_z;
-    /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
-    o[6*count + k] = v.rrrrs_M_ya_2_x;
-    o[7*count + k] = v.rrrrs_M_ya_2_x;
-    o[8*count + k] = v.rrrrs_M_ya_2_y;
-    o[9*count + k] = v.rrrrs_M_ya_2_y;
-    o[10*count + k] = v.rrrrs_M_ya_2_z;
-    o[11*count + k] = v.rrrrs_M_ya_2_z;
-    /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 2 */
-    o[12*count + k] = v.rrrrs_dy_2_P_2;
+    any_sums_rrrrs(k, count, add, &v, terms);
+    any_entries_rrrrs_2(k, count, &v, o);
+    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 14*count);
     o[15*count + k] = (v.rrrrs_d_P_2_x + (v.rrrrs_d_P_2_y + v.rrrrs_d_P_2_z)) +
         ((v.rrrrs_M_ya_2_x + v.rrrrs_M_ya_2_y) + (v.rrrrs_M_ya_2_z + v.rrrrs_dy_2_P_2));
-    o[14*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
-    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void M_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *M,
@@ -4446,25 +4506,21 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
     gather(&terms[25*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_rrrrs_yy = sums[6*w + k];
     const real M_ta_rrrrs_zz = sums[7*w + k];
     const real M_ta_rrrs_yy = sums[20*w + k];
@@ -4490,7 +4546,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -4565,9 +4621,11 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         M_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         M_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -4591,30 +4649,36 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[26*LANES];
-    real o_rrrrs[16*LANES];
-    real o_rrrs[2*LANES];
+    ALIGNED real s[27*LANES], sums[26*LANES];
+    ALIGNED real o_rrrrs[16*LANES];
+    ALIGNED real o_rrrs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_place_rrrrs(LANES, k, k, LANES, o_rrrrs, M, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -4640,24 +4704,11 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     stage_rrrrs_V_X(m, w, i, j, V, &v);
     stage_rrrrs_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rrrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.rrrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.rrrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.rrrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.rrrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 2 */
-    o[0*count + k] = v.rrrrs_P_2_o;
-    o[3*count + k] = v.rrrrs_P_2_o;
-    o[2*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
+    any_sums_rrrrs_2(k, count, add, &v, terms);
+    any_entries_rrrrs(k, count, &v, o);
     o[1*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 2*count);
+    o[3*count + k] = v.rrrrs_P_2_o;
 }
 
 INLINE void Z_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *Z,
@@ -4676,25 +4727,14 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.rrrs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrrs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.rrrs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, v.rrrs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
+    any_sums_rrrs(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -4704,7 +4744,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -4732,9 +4772,11 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         Z_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, terms_rrrrs, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         Z_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, V, terms_rrrs, o_rrrs);
     }
@@ -4759,9 +4801,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rrrrs[4*LANES];
-    real o_rrrs[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rrrrs[4*LANES];
+    ALIGNED real o_rrrs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -4769,21 +4812,26 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_place_rrrrs(LANES, k, k, LANES, o_rrrrs, Z, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs_2(k, k, LANES, o_rrrs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -4795,36 +4843,13 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_rrrrs v;
     stage_rrrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrrs_w_1_x;
-    o[1*count + k] = v.rrrrs_w_1_y;
-    o[2*count + k] = v.rrrrs_w_1_z;
-    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrrs_H_a_1_x;
-    o[4*count + k] = v.rrrrs_H_a_1_y;
-    o[5*count + k] = v.rrrrs_H_a_1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[6*count + k] = 1;
-    /* (rrrrs-w_3) reciprocal vector 2 */
-    o[7*count + k] = v.rrrrs_w_3_x;
-    o[8*count + k] = v.rrrrs_w_3_y;
-    o[9*count + k] = v.rrrrs_w_3_z;
-    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-    o[10*count + k] = v.rrrrs_H_a_3_x;
-    o[11*count + k] = v.rrrrs_H_a_3_y;
-    o[12*count + k] = v.rrrrs_H_a_3_z;
-    /* (rrrrs-w_3) */
-    o[13*count + k] = v.rrrrs_w_3_t_7;
+    any_entries_rrrrs_3(k, count, &v, o);
+    o[14*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
         (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_x + (v.rrrrs_w_3_y +
         v.rrrrs_w_3_z)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
         v.rrrrs_w_3_t_7)));
-    o[15*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
-    o[14*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void H_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
@@ -4854,31 +4879,12 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    any_entries_rrrs(k, count, &v, o);
+    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -4889,9 +4895,11 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     clear(H, NV*NU);
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         H_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         H_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -4906,26 +4914,31 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_rrrrs[17*LANES];
-    real o_rrrs[15*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrrs[17*LANES];
+    ALIGNED real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_place_rrrrs(LANES, k, k, LANES, o_rrrrs, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
@@ -5041,11 +5054,11 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     const real rrrrs_P_2_t = v.rrrrs_G_in_axes4_x*v.rrrrs_r_2_in_axes4_y -
         v.rrrrs_G_in_axes4_y*v.rrrrs_r_2_in_axes4_x;
     const real rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rrrrs_R_a_t = rrrrs_c_y*v.rrrrs_q_z - rrrrs_c_z*v.rrrrs_q_y;
     const real rrrrs_R_a_t_2 = rrrrs_c_z*v.rrrrs_q_x - rrrrs_c_x*v.rrrrs_q_z;
     const real rrrrs_R_a_t_3 = rrrrs_c_x*v.rrrrs_q_y - rrrrs_c_y*v.rrrrs_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rrrrs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrrrs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, rrrrs_c_z);  /* R_t_z_of_legs */
@@ -5055,32 +5068,9 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     gather(&terms[5*count + k], add, rrrrs_R_a_t_3);  /* R_a_z_of_legs */
     /* (rrrrs-P_2) */
     o[0*count + k] = rrrrs_P_2;
-    /* (rrrrs-w_1) reciprocal vector 1 */
-    o[1*count + k] = v.rrrrs_w_1_x;
-    o[2*count + k] = v.rrrrs_w_1_y;
-    o[3*count + k] = v.rrrrs_w_1_z;
-    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[4*count + k] = v.rrrrs_H_a_1_x;
-    o[5*count + k] = v.rrrrs_H_a_1_y;
-    o[6*count + k] = v.rrrrs_H_a_1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[7*count + k] = 1;
-    /* (rrrrs-w_3) reciprocal vector 2 */
-    o[8*count + k] = v.rrrrs_w_3_x;
-    o[9*count + k] = v.rrrrs_w_3_y;
-    o[10*count + k] = v.rrrrs_w_3_z;
-    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-    o[11*count + k] = v.rrrrs_H_a_3_x;
-    o[12*count + k] = v.rrrrs_H_a_3_y;
-    o[13*count + k] = v.rrrrs_H_a_3_z;
-    /* (rrrrs-w_3) */
-    o[14*count + k] = v.rrrrs_w_3_t_7;
-    o[16*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
+    any_entries_rrrrs_3(k, count, &v, o + 1*count);
     o[15*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 16*count);
 }
 
 INLINE void required_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5134,28 +5124,9 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[3*count + k], add, rrrs_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
-    o[13*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
+    any_entries_rrrs(k, count, &v, o);
     o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 13*count);
 }
 
 INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -5179,7 +5150,7 @@ INLINE void required_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -5189,7 +5160,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -5219,12 +5190,14 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
             required_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), 0, s, X, V, A,
                 terms_rrrrs, o_rrrrs);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             required_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, V, A,
                 terms_rrrs, o_rrrs);
@@ -5251,10 +5224,11 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_rrrrs[17*LANES];
-    real o_rrrs[14*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_rrrrs[17*LANES];
+    ALIGNED real o_rrrs[14*LANES];
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -5262,21 +5236,26 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrrrs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrrrs(LANES, k, k, LANES, o_rrrrs, required, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrrs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrrs(LANES, i, k, k, LANES, o_rrrs, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -5303,11 +5282,11 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     o[2*count + k] = rrrrs_q_3;
     /* (rrrrs-q_4) */
     o[3*count + k] = rrrrs_q_4;
-    o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
+    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
         TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
 }
 
 INLINE void inverse_kinematics_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real
@@ -5339,11 +5318,11 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = rrrs_q_2;
     /* (rrrs-q_3) */
     o[2*count + k] = rrrs_q_3;
-    o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
+    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
 }
 
 INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -5364,9 +5343,11 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         inverse_kinematics_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         inverse_kinematics_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, o_rrrs);
     }
@@ -5381,25 +5362,30 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrrs[7*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrrs[7*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrrrs(LANES, k, k, LANES, o_rrrrs, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrrs(m, LANES, i, k, k, LANES, s, X, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrrs(LANES, i, k, k, LANES, o_rrrs, q, t);
         }
@@ -5423,13 +5409,9 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t
     o[2*count + k] = v.rrrrs_qd_3;
     /* (rrrrs-qd_4) rate of joint 4 */
     o[3*count + k] = v.rrrrs_qd_4;
-    o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3 + v.rrrrs_qd_4);
-    o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
     o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 5*count);
+    o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3 + v.rrrrs_qd_4);
 }
 
 INLINE void joint_rates_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -5456,13 +5438,9 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
 }
 
 INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -5484,9 +5462,11 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_rates_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_rates_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, o_rrrs);
     }
@@ -5501,25 +5481,30 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrrs[7*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrrs[7*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, V, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrrrs(LANES, k, k, LANES, o_rrrrs, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qd, t);
         }
@@ -5545,13 +5530,9 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     o[2*count + k] = v.rrrrs_qdd_3;
     /* (rrrrs-qdd_4) acceleration of joint 4 */
     o[3*count + k] = v.rrrrs_qdd_4;
-    o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3 + v.rrrrs_qdd_4);
-    o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
     o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 5*count);
+    o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3 + v.rrrrs_qdd_4);
 }
 
 INLINE void joint_accelerations_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const
@@ -5579,13 +5560,9 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.rrrs_qdd_2;
     /* (rrrs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.rrrs_qdd_3;
-    o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 4*count);
+    o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
 }
 
 INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -5607,9 +5584,11 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         joint_accelerations_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         joint_accelerations_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
     }
@@ -5624,25 +5603,30 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_rrrrs[7*LANES];
-    real o_rrrs[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_rrrrs[7*LANES];
+    ALIGNED real o_rrrs[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrrrs(m, LANES, i, k, k, LANES, s, X, V, A, o_rrrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrrrs(LANES, k, k, LANES, o_rrrrs, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrrs(m, LANES, i, k, k, LANES, s, X, V, A, o_rrrs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrrs(LANES, i, k, k, LANES, o_rrrs, qdd, t);
         }
@@ -5688,12 +5672,8 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     o[6*count + k] = v.rrrrs_w_3_x;
     o[7*count + k] = v.rrrrs_w_3_y;
     o[8*count + k] = v.rrrrs_w_3_z;
-    o[10*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
     o[9*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 10*count);
 }
 
 INLINE void legs_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5748,12 +5728,8 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
-    o[10*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
     o[9*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 10*count);
 }
 
 INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -5782,11 +5758,13 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
             legs_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), s, X, V, A, o_rrrrs);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             legs_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), s, X, V, A, o_rrrs);
         }
@@ -5854,10 +5832,10 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9;
     /* (potential) */
     gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
         TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
-    o[0*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -5889,10 +5867,10 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         v.rrrs_h_2_t_20*rrrs_potential_t_6);
     /* (potential) */
     gather(&terms[1*count + k], add, rrrs_potential_t_7);  /* potential_t_2 */
+    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -5914,12 +5892,14 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrrs); ++k) {
             potential_legs_rrrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs,
                 o_rrrrs);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrrs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrrs); ++k) {
             potential_legs_rrrs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs,
                 o_rrrs);
@@ -5978,7 +5958,7 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         lesser(lesser(lesser(root(m->inv_rrrrs_rho2_3_t[i]*rrrrs_pivot_size_2),
         m->inv_rrrrs_size[i]*rrrrs_pivot_size_3), m->inv_rrrrs_size[i]*rrrrs_pivot_size_4),
         root(m->inv_rrrrs_size_t_3[i]*rrrrs_pivot_size));
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rrrrs_spread_t = m->b_c_in_platform_x - m->rrrrs_platform_point_x[i];
     const real rrrrs_spread_t_2 = m->b_c_in_platform_y - m->rrrrs_platform_point_y[i];
     const real rrrrs_spread_t_3 = m->b_c_in_platform_z - m->rrrrs_platform_point_z[i];
@@ -5986,39 +5966,16 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         rrrrs_spread_t_2*rrrrs_spread_t_2 + rrrrs_spread_t_3*rrrrs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, rrrrs_spread_t_4);  /* spread_rrrrs */
-    /* (rrrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrrs_w_1_x;
-    o[1*count + k] = v.rrrrs_w_1_y;
-    o[2*count + k] = v.rrrrs_w_1_z;
-    /* (rrrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrrs_H_a_1_x;
-    o[4*count + k] = v.rrrrs_H_a_1_y;
-    o[5*count + k] = v.rrrrs_H_a_1_z;
-    /* (legs_size) */
-    o[6*count + k] = 1;
-    /* (rrrrs-w_3) reciprocal vector 2 */
-    o[7*count + k] = v.rrrrs_w_3_x;
-    o[8*count + k] = v.rrrrs_w_3_y;
-    o[9*count + k] = v.rrrrs_w_3_z;
-    /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-    o[10*count + k] = v.rrrrs_H_a_3_x;
-    o[11*count + k] = v.rrrrs_H_a_3_y;
-    o[12*count + k] = v.rrrrs_H_a_3_z;
-    /* (rrrrs-w_3) */
-    o[13*count + k] = v.rrrrs_w_3_t_7;
+    any_entries_rrrrs_3(k, count, &v, o);
     /* (rrrrs-G) */
     o[14*count + k] = rrrrs_least_pivots;
     o[15*count + k] = v.rrrrs_h_3_t_23;
+    o[16*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    any_singular_rrrrs(m, i, k, &v, o + 17*count);
     o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
         v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) + (((v.rrrrs_w_3_y +
         v.rrrrs_w_3_z) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
         v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_h_3_t_23)));
-    o[17*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
-        TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) + UNLESS(magnitude(v.rrrrs_v_1_in_axes4_z) >
-        TOLERANCE*m->rrrrs_size[i]) + UNLESS(magnitude(v.rrrrs_r_3_in_axes4_y) >
-        TOLERANCE*m->rrrrs_size[i]);
-    o[16*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
 }
 
 INLINE void condition_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -6068,35 +6025,16 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         + rrrs_spread_t_3*rrrs_spread_t_3;
     /* (spread) */
     gather(&terms[1*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
-    /* (rrrs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrrs_w_1_x;
-    o[1*count + k] = v.rrrs_w_1_y;
-    o[2*count + k] = v.rrrs_w_1_z;
-    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.rrrs_H_a_1_x;
-    o[4*count + k] = v.rrrs_H_a_1_y;
-    o[5*count + k] = v.rrrs_H_a_1_z;
-    /* (rrrs-w_2) reciprocal vector 2 */
-    o[6*count + k] = v.rrrs_w_2_x;
-    o[7*count + k] = v.rrrs_w_2_y;
-    o[8*count + k] = v.rrrs_w_2_z;
-    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.rrrs_H_a_2_x;
-    o[10*count + k] = v.rrrs_H_a_2_y;
-    o[11*count + k] = v.rrrs_H_a_2_z;
+    any_entries_rrrs(k, count, &v, o);
     /* (rrrs-G) */
     o[12*count + k] = rrrs_least_pivots;
     o[13*count + k] = v.rrrs_h_2_t_17;
+    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    any_singular_rrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
         v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
         v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
         v.rrrs_h_2_t_17)));
-    o[15*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
-        TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) + UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) >
-        TOLERANCE*m->rrrs_size[i]) + UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) >
-        TOLERANCE*m->rrrs_size[i]);
-    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
 }
 
 INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -6123,7 +6061,7 @@ INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rrrrs = sums[0*w + k];
     const real spread_rrrs = sums[1*w + k];
     const real spread_ = root(R(0.3333333333333333)*spread_rrrrs +
@@ -6142,9 +6080,11 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(H, NV*NU);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrrs); ++k) {
         condition_legs_rrrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrrs), 0, s, X, terms_rrrrs, o_rrrrs);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrrs))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrrs); ++k) {
         condition_legs_rrrs(m, 1, k, 0, k, LEGS(LEGS_OF_rrrs), 0, s, X, terms_rrrs, o_rrrs);
     }
@@ -6183,8 +6123,8 @@ int hybrid_3rrrs_redundant_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -6208,8 +6148,8 @@ int hybrid_3rrrs_redundant_Z(const prepared *m, const real *X, const real *V, re
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6234,8 +6174,8 @@ int hybrid_3rrrs_redundant_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -6259,8 +6199,8 @@ int hybrid_3rrrs_redundant_inverse_kinematics(const prepared *m, const real *X, 
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -6286,8 +6226,8 @@ int hybrid_3rrrs_redundant_joint_rates(const prepared *m, const real *X, const r
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6314,8 +6254,8 @@ int hybrid_3rrrs_redundant_joint_accelerations(const prepared *m, const real *X,
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6349,8 +6289,8 @@ int hybrid_3rrrs_redundant_dynamics(const prepared *m, const real *X, const real
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6387,19 +6327,21 @@ int hybrid_3rrrs_redundant_inverse_dynamics(const prepared *m, const real *X, co
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], extend_1[7*LANES], subtract_1[NV*LANES], tau[NU*LANES],
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], extend_1[7*LANES], subtract_1[NV*LANES], tau[NU*LANES],
         work[NV*PADDED(NV)*LANES];
-    status_flags why;
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 7*LANES; ++i) {
         extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - extend_1[i];
     }
@@ -6440,10 +6382,10 @@ int hybrid_3rrrs_redundant_forward_dynamics(const prepared *m, const real *X, co
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[7*LANES], add_1[NV*LANES],
-        subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[7*LANES],
+        add_1[NV*LANES], subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6451,12 +6393,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 7*LANES; ++i) {
         extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + extend_1[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

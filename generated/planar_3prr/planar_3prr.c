@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && PLANAR_3PRR_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1013,6 +1046,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1029,6 +1063,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1038,6 +1073,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1064,6 +1100,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1094,6 +1131,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1214,10 +1252,10 @@ typedef struct {
     real prr_q_x, prr_q_y, prr_S_in_axes0_x, prr_disc_1, prr_q_1_t, prr_c_2, prr_s_2,
         prr_v_2_in_axes0_x, prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t,
         prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
-        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
-        prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
-        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_yy, prr_Q_xy, prr_M_ta_t,
-        prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
+        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_x, prr_S_dot_y, prr_qd_1_t,
+        prr_u_1_x, prr_u_1_y, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_U_x, prr_U_y, prr_Z_a_t, prr_Q_xx,
+        prr_Q_yy, prr_Q_xy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t, prr_acc_2_in_axes2_x,
         prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
 
@@ -1280,22 +1318,24 @@ INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
     v->prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
 }
 
-INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_prr *v)
+INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *V, values_prr *v)
 {
     /* (prr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    v->prr_S_dot_t = omega_z*v->prr_q_y;
-    v->prr_S_dot_t_2 = omega_z*v->prr_q_x;
     const real t_dot_x = V[0*w + j];
-    v->prr_S_dot_x = t_dot_x - v->prr_S_dot_t;
+    v->prr_S_dot_x = t_dot_x - omega_z*v->prr_q_y;
     const real t_dot_y = V[1*w + j];
-    v->prr_S_dot_y = t_dot_y + v->prr_S_dot_t_2;
+    v->prr_S_dot_y = t_dot_y + omega_z*v->prr_q_x;
     /* (prr-qd_1) rate of joint 1 */
     v->prr_qd_1_t = v->prr_w_1_t*(v->prr_S_dot_x*m->prr_base_frame_xy[i] +
         v->prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-W_2) centripetal tensor of link 2 */
     const real prr_W_2_t = v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-u_1) centripetal acceleration of the connection point */
+    const real W_p_xx = s[2*w + j];
+    v->prr_u_1_x = W_p_xx*v->prr_q_x;
+    v->prr_u_1_y = W_p_xx*v->prr_q_y;
     /* (prr-bias) acceleration of the connection point at zero joint accelerations */
     v->prr_bias_t = m->prr_platform_joint_offset_x[i]*v->prr_qd_1_t*v->prr_qd_1_t;
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
@@ -1304,12 +1344,11 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->prr_c_t_2 = prr_W_2_t*m->prr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
+INLINE void stage_prr_A_V_X(values_prr *v)
 {
     /* (prr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prr_S_ddot_x = v->prr_a_p_x - omega_z*v->prr_S_dot_t_2;
-    const real prr_S_ddot_y = v->prr_a_p_y - omega_z*v->prr_S_dot_t;
+    const real prr_S_ddot_x = v->prr_a_p_x + v->prr_u_1_x;
+    const real prr_S_ddot_y = v->prr_a_p_y + v->prr_u_1_y;
     v->prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*prr_S_ddot_x -
         v->axis_y_prr_axes2_x*prr_S_ddot_y;
     v->prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
@@ -1321,6 +1360,52 @@ INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
         prr_rel_in_axes2_x*v->prr_s_2);
     v->prr_qdd_1 = v->prr_c_2*prr_rel_in_axes2_x - v->prr_S_ddot_in_axes2_y*v->prr_s_2 +
         v->prr_qdd_1_t*v->prr_v_2_in_axes0_x;
+}
+
+INLINE void stage_prr_Z_dynamics(const prepared *m, size_t i, values_prr *v)
+{
+    /* (prr-u_1) centripetal acceleration of the connection point */
+    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_u_1_x -
+        v->axis_y_prr_axes2_x*v->prr_u_1_y;
+    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*v->prr_u_1_y +
+        v->axis_y_prr_axes2_x*v->prr_u_1_x;
+    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
+    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
+        prr_rel_o_in_axes2_x*v->prr_s_2);
+    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
+    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
+    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
+    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
+    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
+    const real prr_c_o_in_axes2_x = v->prr_c_t -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v->prr_s_2;
+    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_o_t;
+    /* (prr-U) velocity and gravity terms of the leg force */
+    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
 }
 
 INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
@@ -1366,56 +1451,6 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     v->prr_M_aa_t = v->prr_M_ta_t_2*v->prr_q_x - v->prr_M_ta_t*v->prr_q_y;
 }
 
-INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
-    values_prr *v)
-{
-    /* (prr-u_1) centripetal acceleration of the connection point */
-    const real W_p_xx = s[2*w + j];
-    const real prr_u_1_x = W_p_xx*v->prr_q_x;
-    const real prr_u_1_y = W_p_xx*v->prr_q_y;
-    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x -
-        v->axis_y_prr_axes2_x*prr_u_1_y;
-    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*prr_u_1_y +
-        v->axis_y_prr_axes2_x*prr_u_1_x;
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v->prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
-    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v->prr_c_t -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v->prr_s_2;
-    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
-        v->prr_c_2*prr_c_o_t;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
-    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
-}
-
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
@@ -1450,13 +1485,54 @@ INLINE void any_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[5*count + at];
 }
 
+INLINE void any_sums_prr(size_t k, size_t count, int add, const values_prr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->prr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->prr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_prr_2(size_t k, size_t count, int add, const values_prr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->prr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->prr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_prr(size_t k, size_t count, const values_prr *v, real *o)
+{
+    /* (prr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->prr_w_1_x;
+    o[1*count + k] = v->prr_w_1_y;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->prr_H_a_1_z;
+}
+
 INLINE void any_place_prr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -1496,59 +1572,43 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_Z_dynamics(m, i, &v);
     stage_prr_M_dynamics(m, i, &v);
-    stage_prr_Z_dynamics(m, w, i, j, s, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[8*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
+    any_sums_prr(k, count, add, &v, terms);
+    any_sums_prr_2(k, count, add, &v, terms + 6*count);
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -1581,6 +1641,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_prr[9*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1597,8 +1658,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[8*LANES], sums[9*LANES];
-    real o_prr[6*LANES];
+    ALIGNED real s[8*LANES], sums[9*LANES];
+    ALIGNED real o_prr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         dynamics_before(m, LANES, k, X, V, &v, s);
@@ -1606,13 +1668,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -1634,15 +1699,7 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_prr(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
@@ -1650,19 +1707,19 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -1687,6 +1744,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_prr[6*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         M_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -1702,37 +1760,31 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[5*LANES], sums[6*LANES];
-    real o_prr[2*LANES];
+    ALIGNED real s[5*LANES], sums[6*LANES];
+    ALIGNED real o_prr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr_2(k, k, LANES, o_prr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
-    *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
@@ -1751,27 +1803,23 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_Z_dynamics(m, w, i, j, s, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[2*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_Z_dynamics(m, i, &v);
+    any_sums_prr_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -1788,7 +1836,8 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real s[6] CLEARED, sums[3] CLEARED;
     real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -1805,22 +1854,26 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[6*LANES], sums[3*LANES];
-    real o_prr[2*LANES];
+    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real o_prr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
         Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr_2(k, k, LANES, o_prr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -1832,14 +1885,10 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -1847,7 +1896,8 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real s[3] CLEARED;
     real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         H_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -1859,16 +1909,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[3*LANES];
-    real o_prr[6*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_prr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
         }
@@ -1876,10 +1929,9 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 }
 
 /* ---- required ---- */
-INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
-    values *v, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, values *v, real
+    *s)
 {
-    stage_V(w, k, V, v);
     stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -1904,8 +1956,8 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1913,18 +1965,14 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_y;
     const real prr_c_y = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_y -
         v.axis_y_prr_axes2_x*v.prr_c_in_axes2_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real prr_R_a_t = prr_c_x*v.prr_q_y - prr_c_y*v.prr_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, prr_R_a_t);  /* R_a_z_of_legs */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
@@ -1941,14 +1989,14 @@ INLINE void required_place_prr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -1965,8 +2013,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     real s[6] CLEARED, sums[3] CLEARED;
     real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             required_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr,
                 o_prr);
@@ -1978,29 +2027,33 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
-    required_between(m, 1, 0, V, A, &v, s);
+    required_between(m, 1, 0, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[6*LANES], sums[3*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
-        required_between(m, LANES, k, V, A, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
+        required_between(m, LANES, k, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_prr(LANES, i, k, k, LANES, o_prr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2020,8 +2073,8 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = prr_q_1;
     /* (prr-q_2) */
     o[1*count + k] = prr_q_2;
-    o[3*count + k] = prr_q_1 + prr_q_2;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
+    o[3*count + k] = prr_q_1 + prr_q_2;
 }
 
 INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2038,7 +2091,8 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real s[3] CLEARED;
     real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         inverse_kinematics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -2050,16 +2104,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_prr[4*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_prr[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_prr(LANES, i, k, k, LANES, o_prr, q, t);
         }
@@ -2072,7 +2129,7 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
     /* (prr-qd_1) rate of joint 1 */
     const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
         v.prr_S_dot_y*m->prr_base_frame_yx[i] + v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
@@ -2080,9 +2137,9 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = prr_qd_1;
     /* (prr-qd_2) rate of joint 2 */
     o[1*count + k] = -v.prr_qd_1_t;
-    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
 }
 
 INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -2101,7 +2158,8 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real s[3] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_rates_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, o_prr);
     }
@@ -2113,16 +2171,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_prr(m, LANES, i, k, k, LANES, s, X, V, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_prr(LANES, i, k, k, LANES, o_prr, qd, t);
         }
@@ -2136,15 +2197,15 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     /* (prr-qdd_1) acceleration of joint 1 */
     o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prr_qdd_1_t;
-    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
 }
 
 INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2163,7 +2224,8 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real s[3] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_accelerations_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
     }
@@ -2175,16 +2237,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_prr(m, LANES, i, k, k, LANES, s, X, V, A, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_prr(LANES, i, k, k, LANES, o_prr, qdd, t);
         }
@@ -2198,8 +2263,8 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
     /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real prr_c_true_in_axes2_x = v.prr_c_in_axes2_x -
@@ -2239,8 +2304,9 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             legs_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
         }
@@ -2300,8 +2366,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     real s[4] CLEARED, sums[1] CLEARED;
     real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             potential_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr,
                 o_prr);
@@ -2338,24 +2405,20 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
        degrees of freedom */
     const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
     const real prr_pivot = m->inv_prr_size[i]*prr_pivot_size;
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real prr_spread_t = m->b_c_in_platform_x - m->prr_platform_point_x[i];
     const real prr_spread_t_2 = m->b_c_in_platform_y - m->prr_platform_point_y[i];
     const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, prr_spread_t_3);  /* spread_prr */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
+    any_entries_prr(k, count, &v, o);
     /* (prr-G) */
     o[3*count + k] = prr_pivot;
     o[4*count + k] = v.prr_disc_1;
-    o[7*count + k] = (v.prr_w_1_x + v.prr_w_1_y) + (v.prr_H_a_1_z + (prr_pivot +
-        v.prr_disc_1));
     o[5*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[7*count + k] = (v.prr_w_1_x + v.prr_w_1_y) + (v.prr_H_a_1_z + (prr_pivot +
+        v.prr_disc_1));
 }
 
 INLINE void condition_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2374,7 +2437,7 @@ INLINE void condition_place_prr(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_prr = sums[0*w + k];
     const real spread_ = root(spread_prr)*m->spread_t;
     /* (spread) */
@@ -2389,6 +2452,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         condition_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -2417,8 +2481,8 @@ int planar_3prr_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -2440,8 +2504,8 @@ int planar_3prr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2464,8 +2528,8 @@ int planar_3prr_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -2487,8 +2551,8 @@ int planar_3prr_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -2511,8 +2575,8 @@ int planar_3prr_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2537,8 +2601,8 @@ int planar_3prr_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2568,8 +2632,8 @@ int planar_3prr_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2583,6 +2647,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -2659,15 +2724,16 @@ int planar_3prr_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -2712,10 +2778,10 @@ int planar_3prr_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2723,9 +2789,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

@@ -155,7 +155,7 @@ int planar_3prr_joint_rates(const planar_3prr_model *model, const planar_3prr_re
 size_t planar_3prr_joint_rates_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, const planar_3prr_real *V, planar_3prr_real *rates, int *status);
 
-/* Accelerations of all joints. 129 mul, 78 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 130 mul, 78 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_3prr_joint_accelerations(const planar_3prr_model *model, const planar_3prr_real *X,
     const planar_3prr_real *V, const planar_3prr_real *A, planar_3prr_real *accelerations);
@@ -202,7 +202,7 @@ size_t planar_3prr_complete_acceleration_batch(const planar_3prr_model *model, s
     planar_3prr_real *wrench, planar_3prr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 225 mul, 144 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 226 mul, 144 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_3prr_leg_reactions(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, const planar_3prr_real *A, const planar_3prr_real *wrench,
@@ -295,7 +295,7 @@ int planar_3prr_actuator_rates(const planar_3prr_model *model, const planar_3prr
 size_t planar_3prr_actuator_rates_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, const planar_3prr_real *V, planar_3prr_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 129 mul, 78 add, 3 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 130 mul, 78 add, 3 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int planar_3prr_actuator_accelerations(const planar_3prr_model *model, const planar_3prr_real *X,
     const planar_3prr_real *V, const planar_3prr_real *A, planar_3prr_real *accelerations);

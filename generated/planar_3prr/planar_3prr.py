@@ -1704,10 +1704,8 @@ def _run_dynamics(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2053,10 +2051,8 @@ def _run_Z(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2275,10 +2271,8 @@ def _run_required(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2295,12 +2289,15 @@ def _run_required(m, X, V, A):
         prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations
@@ -2469,10 +2466,8 @@ def _run_joint_rates(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2492,7 +2487,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 129 mul, 78 add, 3 div, 3 sqrt, 0 trig
+# joint_accelerations: 130 mul, 78 add, 3 div, 3 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -2522,6 +2517,8 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_2
     ok = True
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
@@ -2548,10 +2545,8 @@ def _run_joint_accelerations(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2561,12 +2556,15 @@ def _run_joint_accelerations(m, X, V, A):
         prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         # (prr-qd_1) rate of joint 1
         prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations
@@ -2587,7 +2585,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 225 mul, 144 add, 3 div, 3 sqrt, 0 trig
+# legs: 226 mul, 144 add, 3 div, 3 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -2618,6 +2616,8 @@ def _run_legs(m, X, V, A):
     ok = True
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
@@ -2645,10 +2645,8 @@ def _run_legs(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2665,12 +2663,15 @@ def _run_legs(m, X, V, A):
         prr_qd_1_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations

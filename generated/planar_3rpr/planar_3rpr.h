@@ -96,12 +96,12 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rpr; copies of the first fill up */
-    planar_3rpr_real rpr_J_group_1_in_axes1_zz[4], rpr_acc_2_t[4], rpr_acc_2_t_2[4],
-            rpr_base_frame_xx[4], rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4],
-            rpr_base_point_x[4], rpr_base_point_y[4], rpr_branch_1[4], rpr_h_1_in_spec1_x[4],
-            rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4], rpr_h_2_in_spec1_y[4], rpr_link1_mass[4],
-            rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4], rpr_potential_t[4],
-            rpr_potential_t_2[4];
+    planar_3rpr_real rpr_J_group_1_in_axes1_zz[4], rpr_base_frame_xx[4], rpr_base_frame_xy[4],
+            rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4], rpr_base_point_y[4],
+            rpr_branch_1[4], rpr_h_1_in_spec1_x[4], rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4],
+            rpr_h_2_in_spec1_y[4], rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4],
+            rpr_platform_point_y[4], rpr_potential_t[4], rpr_potential_t_2[4], rpr_potential_t_3[4],
+            rpr_potential_t_4[4];
     planar_3rpr_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
             gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star, spread_t;
 } planar_3rpr_model;
@@ -168,7 +168,7 @@ size_t planar_3rpr_dynamics_batch(const planar_3rpr_model *model, size_t n, cons
     *X, const planar_3rpr_real *V, planar_3rpr_real *M, planar_3rpr_real *Z, planar_3rpr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 182 mul, 127 add, 3 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 176 mul, 127 add, 3 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3rpr_inverse_dynamics(const planar_3rpr_model *model, const planar_3rpr_real *X, const
@@ -199,7 +199,7 @@ size_t planar_3rpr_complete_acceleration_batch(const planar_3rpr_model *model, s
     planar_3rpr_real *wrench, planar_3rpr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 162 mul, 105 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 156 mul, 105 add, 3 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_3rpr_leg_reactions(const planar_3rpr_model *model, const planar_3rpr_real *X, const
     planar_3rpr_real *V, const planar_3rpr_real *A, const planar_3rpr_real *wrench,

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && PLANAR_4RPR_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -162,6 +187,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -188,6 +214,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -247,19 +274,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -307,10 +337,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -362,6 +394,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -638,9 +671,6 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         /* (rpr-h_2) first moment of link 2 about the connection point */
         const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
         const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
             rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
@@ -657,13 +687,13 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
         /* (potential) potential energy */
-        const real rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x +
+        const real rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
+        const real rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
+        const real rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x +
             rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
+        const real rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
         KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rpr_acc_2_t);
-        KEEP_OF_LEG(rpr_acc_2_t_2);
         KEEP_OF_LEG(rpr_base_frame_xx);
         KEEP_OF_LEG(rpr_base_frame_xy);
         KEEP_OF_LEG(rpr_base_frame_yx);
@@ -681,6 +711,8 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         KEEP_OF_LEG(rpr_platform_point_y);
         KEEP_OF_LEG(rpr_potential_t);
         KEEP_OF_LEG(rpr_potential_t_2);
+        KEEP_OF_LEG(rpr_potential_t_3);
+        KEEP_OF_LEG(rpr_potential_t_4);
         m_star_of_legs += rpr_link2_mass;
         h_star_in_platform_x_of_legs += rpr_h_star_t;
         h_star_in_platform_y_of_legs += rpr_h_star_t_2;
@@ -1064,6 +1096,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1078,6 +1111,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1089,6 +1123,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1098,6 +1133,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1124,6 +1160,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1154,6 +1191,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1417,13 +1455,13 @@ INLINE void stage_V_X(values *v)
 }
 
 typedef struct {
-    real rpr_q_x, rpr_q_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y,
-        rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
-        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
-        rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
-        rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
-        rpr_c_in_axes1_y;
+    real rpr_q_x, rpr_q_y, rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2,
+        axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_mu_1_t,
+        rpr_H_a_2_z, rpr_a_p_x, rpr_a_p_y, rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx,
+        rpr_u_1_t, rpr_u_1_y, rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x,
+        rpr_S_ddot_in_axes1_y, rpr_qdd_1, rpr_U_x, rpr_U_y, rpr_Z_a_t, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy,
+        rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y,
+        rpr_phi_2_in_axes1_x, rpr_c_in_axes1_y;
 } values_rpr;
 
 INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1438,27 +1476,27 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rpr_S_x = t_x - m->rpr_base_point_x[i] + v->rpr_q_x;
     const real t_y = X[1*w + j];
     const real rpr_S_y = t_y - m->rpr_base_point_y[i] + v->rpr_q_y;
-    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
-        rpr_S_y*m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
-        rpr_S_y*m->rpr_base_frame_yy[i];
+    v->rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] + rpr_S_y*m->rpr_base_frame_yx[i];
+    v->rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] + rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
-    v->rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    v->rpr_q_2_t = v->rpr_S_in_turn1_x*v->rpr_S_in_turn1_x +
+        v->rpr_S_in_turn1_y*v->rpr_S_in_turn1_y;
     v->rpr_q_2 = m->rpr_branch_1[i]*root(v->rpr_q_2_t);
     /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
     v->inv_rpr_q_2 = 1/v->rpr_q_2;
     /* (rpr-S_dot) velocity of the connection point */
     v->axis_x_rpr_axes1_x = v->inv_rpr_q_2*rpr_S_x;
     v->axis_x_rpr_axes1_y = v->inv_rpr_q_2*rpr_S_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*m->gravity_x +
+        v->axis_x_rpr_axes1_y*m->gravity_y;
+    v->rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
+        v->axis_x_rpr_axes1_y*m->gravity_x;
+    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rpr_mu_1_t = v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] -
+        v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i];
     /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
     v->rpr_H_a_2_z = v->axis_x_rpr_axes1_y*v->rpr_q_x - v->axis_x_rpr_axes1_x*v->rpr_q_y;
-    /* (rpr-c_1) */
-    v->rpr_c_1 = v->inv_rpr_q_2*rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rpr_s_1 = v->inv_rpr_q_2*rpr_S_in_turn1_y;
-    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    v->rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 + m->rpr_acc_2_t_2[i]*v->rpr_s_1;
-    v->rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 - m->rpr_acc_2_t[i]*v->rpr_s_1;
 }
 
 INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
@@ -1516,6 +1554,41 @@ INLINE void stage_rpr_A_V_X(values_rpr *v)
     v->rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
 }
 
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-u_1) centripetal acceleration of the connection point */
+    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
+        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
+    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
+    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
+    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - v->rpr_g_in_axes1_x;
+    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_g_in_axes1_y;
+    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
+       */
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
+    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rpr_mu_1_o_in_axes1_z = rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
+    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
+        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    /* (rpr-U) velocity and gravity terms of the leg force */
+    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
+}
+
 INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -1540,47 +1613,6 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     v->rpr_M_aa_t = v->rpr_M_ta_t_2*v->rpr_q_x - v->rpr_M_ta_t*v->rpr_q_y;
 }
 
-INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
-{
-    /* (rpr-u_1) centripetal acceleration of the connection point */
-    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
-        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
-    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
-    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
-    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x_2 = v->axis_x_rpr_axes1_x*m->gravity_x +
-        v->axis_x_rpr_axes1_y*m->gravity_y;
-    const real rpr_g_in_axes1_y_2 = v->axis_x_rpr_axes1_x*m->gravity_y -
-        v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
-        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - rpr_g_in_axes1_x_2;
-    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2;
-    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-       */
-    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
-    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x_2*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y_2*m->rpr_h_1_in_spec1_x[i] +
-        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
-    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
-        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
-    /* (rpr-U) velocity and gravity terms of the leg force */
-    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
-    /* (Z_a) rotational part of Z */
-    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
-}
-
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
@@ -1589,10 +1621,8 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
     /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
     v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
-        v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+    const real rpr_mu_1_in_axes1_z = v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_mu_1_t - v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1617,6 +1647,37 @@ INLINE void any_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
     H[(2*NU + i)*w + k] = o[2*count + at];
     t->singular[k] += o[3*count + at];
     t->total[k] += o[4*count + at];
+}
+
+INLINE void any_sums_rpr(size_t k, size_t count, int add, const values_rpr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rpr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rpr_2(size_t k, size_t count, int add, const values_rpr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rpr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rpr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rpr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rpr(size_t k, size_t count, const values_rpr *v, real *o)
+{
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v->axis_x_rpr_axes1_x;
+    o[1*count + k] = v->axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rpr_H_a_2_z;
 }
 
 INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1655,58 +1716,42 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
-    stage_rpr_M_dynamics(m, i, &v);
     stage_rpr_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[8*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
+    stage_rpr_M_dynamics(m, i, &v);
+    any_sums_rpr(k, count, add, &v, terms);
+    any_sums_rpr_2(k, count, add, &v, terms + 6*count);
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[4*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[5*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -1739,6 +1784,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rpr[9*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -1755,8 +1801,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[7*LANES], sums[9*LANES];
-    real o_rpr[5*LANES];
+    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real o_rpr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
@@ -1764,13 +1811,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -1783,15 +1833,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rpr(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -1799,19 +1841,19 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -1836,6 +1878,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -1851,21 +1894,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[4*LANES], sums[6*LANES];
-    real o_rpr[LANES];
+    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real o_rpr[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -1893,25 +1940,21 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[2*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rpr_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[2*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[3*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -1929,6 +1972,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
@@ -1945,8 +1989,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
-    real o_rpr[LANES];
+    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real o_rpr[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
@@ -1954,13 +1999,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -1972,14 +2020,10 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -1988,6 +2032,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -1999,16 +2044,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[2*LANES];
-    real o_rpr[5*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rpr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr(LANES, i, k, k, LANES, o_rpr, H, t);
         }
@@ -2053,18 +2101,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
         v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, rpr_R_a_t);  /* R_a_z_of_legs */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -2080,14 +2124,14 @@ INLINE void required_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2106,6 +2150,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr,
                 o_rpr);
@@ -2127,15 +2172,19 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (rpr-q_1) displacement of joint 1 */
-    const real rpr_q_1 = angle(v.rpr_s_1, v.rpr_c_1);
+    const real rpr_q_1 = angle(rpr_s_1, rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
     /* (rpr-q_2) displacement of joint 2 */
     o[1*count + k] = v.rpr_q_2;
-    o[3*count + k] = rpr_q_1 + v.rpr_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = rpr_q_1 + v.rpr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2153,6 +2202,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
@@ -2164,16 +2214,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rpr[4*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rpr(LANES, i, k, k, LANES, o_rpr, q, t);
         }
@@ -2191,9 +2244,9 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rpr_S_dot_in_axes1_x;
-    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
 }
 
 INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -2212,6 +2265,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
@@ -2223,16 +2277,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rpr[4*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rpr(LANES, i, k, k, LANES, o_rpr, qd, t);
         }
@@ -2254,9 +2311,9 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
-    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
 }
 
 INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2275,6 +2332,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
@@ -2286,16 +2344,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rpr[4*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, A, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rpr(LANES, i, k, k, LANES, o_rpr, qdd, t);
         }
@@ -2351,6 +2412,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
         }
@@ -2377,14 +2439,20 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (potential) */
-    const real rpr_potential_t_3 = v.rpr_g_in_axes1_x*(m->rpr_h_1_in_spec1_x[i] +
-        m->rpr_h_2_in_spec1_x[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
-        m->rpr_potential_t_2[i]*v.rpr_s_1)) + v.rpr_g_in_axes1_y*(m->rpr_h_1_in_spec1_y[i] +
-        m->rpr_h_2_in_spec1_y[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
-        m->rpr_potential_t[i]*v.rpr_s_1));
+    const real rpr_potential_t_5 = (rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i]
+        + m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_3[i] +
+        m->rpr_potential_t_4[i]*rpr_s_1)) + (rpr_c_1*m->rpr_potential_t_2[i] -
+        m->rpr_potential_t[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_4[i] -
+        m->rpr_potential_t_3[i]*rpr_s_1));
     /* (potential) */
-    gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, rpr_potential_t_5);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -2406,6 +2474,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr,
                 o_rpr);
@@ -2444,23 +2513,19 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
     const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
+    any_entries_rpr(k, count, &v, o);
     /* (rpr-G) */
     o[3*count + k] = rpr_least_pivots;
-    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
-        rpr_least_pivots);
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
+        rpr_least_pivots);
 }
 
 INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2476,7 +2541,7 @@ INLINE void condition_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t 
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rpr = sums[0*w + k];
     const real spread_ = R(0.5)*root(spread_rpr);
     /* (spread) */
@@ -2492,6 +2557,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         condition_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
@@ -2520,8 +2586,8 @@ int planar_4rpr_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -2543,8 +2609,8 @@ int planar_4rpr_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2567,8 +2633,8 @@ int planar_4rpr_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -2590,8 +2656,8 @@ int planar_4rpr_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -2614,8 +2680,8 @@ int planar_4rpr_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2640,8 +2706,8 @@ int planar_4rpr_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2671,8 +2737,8 @@ int planar_4rpr_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2716,6 +2782,7 @@ static int inverse_dynamics_one(const prepared *m, const real *X, const real *V,
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -2796,10 +2863,10 @@ int planar_4rpr_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2807,9 +2874,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

@@ -96,12 +96,12 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 4 legs of type rpr */
-    planar_4rpr_real rpr_J_group_1_in_axes1_zz[4], rpr_acc_2_t[4], rpr_acc_2_t_2[4],
-            rpr_base_frame_xx[4], rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4],
-            rpr_base_point_x[4], rpr_base_point_y[4], rpr_branch_1[4], rpr_h_1_in_spec1_x[4],
-            rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4], rpr_h_2_in_spec1_y[4], rpr_link1_mass[4],
-            rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4], rpr_potential_t[4],
-            rpr_potential_t_2[4];
+    planar_4rpr_real rpr_J_group_1_in_axes1_zz[4], rpr_base_frame_xx[4], rpr_base_frame_xy[4],
+            rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4], rpr_base_point_y[4],
+            rpr_branch_1[4], rpr_h_1_in_spec1_x[4], rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4],
+            rpr_h_2_in_spec1_y[4], rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4],
+            rpr_platform_point_y[4], rpr_potential_t[4], rpr_potential_t_2[4], rpr_potential_t_3[4],
+            rpr_potential_t_4[4];
     planar_4rpr_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
             gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star;
 } planar_4rpr_model;
@@ -168,7 +168,7 @@ size_t planar_4rpr_dynamics_batch(const planar_4rpr_model *model, size_t n, cons
     *X, const planar_4rpr_real *V, planar_4rpr_real *M, planar_4rpr_real *Z, planar_4rpr_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 238 mul, 165 add,
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 230 mul, 165 add,
    4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU). */
 int planar_4rpr_inverse_dynamics(const planar_4rpr_model *model, const planar_4rpr_real *X, const
@@ -179,7 +179,7 @@ size_t planar_4rpr_inverse_dynamics_batch(const planar_4rpr_model *model, size_t
     planar_4rpr_real *wrench, planar_4rpr_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   238 mul, 165 add, 4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   230 mul, 165 add, 4 div, 4 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int planar_4rpr_inverse_dynamics_weighted(const planar_4rpr_model *model, const planar_4rpr_real
     *X, const planar_4rpr_real *V, const planar_4rpr_real *A, const planar_4rpr_real *wrench,
@@ -209,7 +209,7 @@ size_t planar_4rpr_complete_acceleration_batch(const planar_4rpr_model *model, s
     planar_4rpr_real *wrench, planar_4rpr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 216 mul, 140 add, 4 div, 4 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 208 mul, 140 add, 4 div, 4 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 3). */
 int planar_4rpr_leg_reactions(const planar_4rpr_model *model, const planar_4rpr_real *X, const
     planar_4rpr_real *V, const planar_4rpr_real *A, const planar_4rpr_real *wrench,
@@ -261,7 +261,7 @@ size_t planar_4rpr_singularity_distance_batch(const planar_4rpr_model *model, si
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 238 mul, 165 add, 4 div, 4 sqrt, 0
+   negative forces: tau_max = -t keeps tensions of t at least. 230 mul, 165 add, 4 div, 4 sqrt, 0
    trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW, or
    NULL), reference (NU, or NULL). Out: tau (NU). */
 int planar_4rpr_force_distribution(const planar_4rpr_model *model, const planar_4rpr_real *X,

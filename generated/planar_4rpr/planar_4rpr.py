@@ -489,9 +489,6 @@ def _prepare(p):
     # (rpr-h_2) first moment of link 2 about the connection point
     rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
     rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
     rpr_J_group_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
@@ -514,8 +511,10 @@ def _prepare(p):
     rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
     rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
     # (potential) potential energy
-    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
     h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
     h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
@@ -589,11 +588,10 @@ def _prepare(p):
         (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -628,13 +626,13 @@ def _prepare(p):
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -643,11 +641,11 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
-                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+                    rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+                    rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+                    rpr_potential_t_2, rpr_potential_t_3, rpr_potential_t_4,),
                 ),
             ),
         ),
@@ -1792,22 +1790,24 @@ def _run_dynamics(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2075,22 +2075,24 @@ def _run_Z(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2180,7 +2182,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 238 mul, 165 add, 4 div, 4 sqrt, 0 trig
+# required: 230 mul, 165 add, 4 div, 4 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -2230,10 +2232,10 @@ def _run_required(m, X, V, A):
     R_t_t, R_t_t_2, R_a_rpr_z = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -2247,9 +2249,6 @@ def _run_required(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -2280,18 +2279,18 @@ def _run_required(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2533,12 +2532,13 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 216 mul, 140 add, 4 div, 4 sqrt, 0 trig
+# legs: 208 mul, 140 add, 4 div, 4 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2566,11 +2566,10 @@ def _run_legs(m, X, V, A):
     out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -2584,9 +2583,6 @@ def _run_legs(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -2617,18 +2613,18 @@ def _run_legs(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2682,11 +2678,11 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
-            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
-            rpr_potential_t_2,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+            rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,
+            rpr_potential_t_3, rpr_potential_t_4,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -2703,22 +2699,20 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
-        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
-        rpr_potential_t_3 = (
-        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+        rpr_potential_t_5 = (
+        (rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x +
+            rpr_h_2_in_spec1_x + rpr_link1_mass*(rpr_c_1*rpr_potential_t_3 +
+            rpr_potential_t_4*rpr_s_1)) + (rpr_c_1*rpr_potential_t_2 -
+            rpr_potential_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_4 - rpr_potential_t_3*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
             0.62)
         )
         # (potential) potential energy
-        potential_t_2 += rpr_potential_t_3
+        potential_t_2 += rpr_potential_t_5
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy

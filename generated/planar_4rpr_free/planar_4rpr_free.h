@@ -114,20 +114,20 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rpr; copies of the first fill up */
-    planar_4rpr_free_real rpr_J_group_1_in_axes1_zz[4], rpr_acc_2_t[4], rpr_acc_2_t_2[4],
-            rpr_base_frame_xx[4], rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4],
-            rpr_base_point_x[4], rpr_base_point_y[4], rpr_branch_1[4], rpr_h_1_in_spec1_x[4],
-            rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4], rpr_h_2_in_spec1_y[4], rpr_link1_mass[4],
-            rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4], rpr_potential_t[4],
-            rpr_potential_t_2[4];
+    planar_4rpr_free_real rpr_J_group_1_in_axes1_zz[4], rpr_base_frame_xx[4], rpr_base_frame_xy[4],
+            rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4], rpr_base_point_y[4],
+            rpr_branch_1[4], rpr_h_1_in_spec1_x[4], rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4],
+            rpr_h_2_in_spec1_y[4], rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4],
+            rpr_platform_point_y[4], rpr_potential_t[4], rpr_potential_t_2[4], rpr_potential_t_3[4],
+            rpr_potential_t_4[4];
     /* 1 legs of type rpr_leg4 */
-    planar_4rpr_free_real rpr_leg4_J_group_1_in_axes1_zz[1], rpr_leg4_acc_2_t[1],
-            rpr_leg4_acc_2_t_2[1], rpr_leg4_base_frame_xx[1], rpr_leg4_base_frame_xy[1],
-            rpr_leg4_base_frame_yx[1], rpr_leg4_base_frame_yy[1], rpr_leg4_base_point_x[1],
-            rpr_leg4_base_point_y[1], rpr_leg4_branch_1[1], rpr_leg4_h_1_in_spec1_x[1],
-            rpr_leg4_h_1_in_spec1_y[1], rpr_leg4_h_2_in_spec1_x[1], rpr_leg4_h_2_in_spec1_y[1],
-            rpr_leg4_link1_mass[1], rpr_leg4_link2_mass[1], rpr_leg4_platform_point_x[1],
-            rpr_leg4_platform_point_y[1], rpr_leg4_potential_t[1], rpr_leg4_potential_t_2[1];
+    planar_4rpr_free_real rpr_leg4_J_group_1_in_axes1_zz[1], rpr_leg4_base_frame_xx[1],
+            rpr_leg4_base_frame_xy[1], rpr_leg4_base_frame_yx[1], rpr_leg4_base_frame_yy[1],
+            rpr_leg4_base_point_x[1], rpr_leg4_base_point_y[1], rpr_leg4_branch_1[1],
+            rpr_leg4_h_1_in_spec1_x[1], rpr_leg4_h_1_in_spec1_y[1], rpr_leg4_h_2_in_spec1_x[1],
+            rpr_leg4_h_2_in_spec1_y[1], rpr_leg4_link1_mass[1], rpr_leg4_link2_mass[1],
+            rpr_leg4_platform_point_x[1], rpr_leg4_platform_point_y[1], rpr_leg4_potential_t[1],
+            rpr_leg4_potential_t_2[1], rpr_leg4_potential_t_3[1], rpr_leg4_potential_t_4[1];
     planar_4rpr_free_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
             gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star;
 } planar_4rpr_free_model;
@@ -200,7 +200,7 @@ size_t planar_4rpr_free_dynamics_batch(const planar_4rpr_free_model *model, size
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, planar_4rpr_free_real *M,
     planar_4rpr_free_real *Z, planar_4rpr_free_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 236 mul, 167 add, 4 div, 4 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 228 mul, 167 add, 4 div, 4 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_4rpr_free_inverse_dynamics(const planar_4rpr_free_model *model, const
@@ -231,7 +231,7 @@ size_t planar_4rpr_free_complete_acceleration_batch(const planar_4rpr_free_model
     *A, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 216 mul, 140 add, 4 div, 4 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 208 mul, 140 add, 4 div, 4 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 3). */
 int planar_4rpr_free_leg_reactions(const planar_4rpr_free_model *model, const
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,

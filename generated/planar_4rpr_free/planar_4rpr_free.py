@@ -562,9 +562,6 @@ def _prepare(p):
     # (rpr-h_2) first moment of link 2 about the connection point
     rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
     rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
     rpr_J_group_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
@@ -587,8 +584,10 @@ def _prepare(p):
     rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
     rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
     # (potential) potential energy
-    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
     h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
     h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
@@ -602,9 +601,6 @@ def _prepare(p):
     # (rpr_leg4-h_2) first moment of link 2 about the connection point
     rpr_leg4_h_2_in_spec1_x = rpr_leg4_link2_centre_of_mass_x*rpr_leg4_link2_mass
     rpr_leg4_h_2_in_spec1_y = rpr_leg4_link2_centre_of_mass_y*rpr_leg4_link2_mass
-    # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_leg4_acc_2_t = gravity_x*rpr_leg4_base_frame_xx + gravity_y*rpr_leg4_base_frame_yx
-    rpr_leg4_acc_2_t_2 = gravity_x*rpr_leg4_base_frame_xy + gravity_y*rpr_leg4_base_frame_yy
     # (rpr_leg4-J_group_1) inertia of the links that turn with link 1, each about its reference point
     rpr_leg4_J_group_1_t = (
     rpr_leg4_link1_centre_of_mass_x*rpr_leg4_link1_centre_of_mass_x +
@@ -627,10 +623,12 @@ def _prepare(p):
     rpr_leg4_J_star_t_3 = rpr_leg4_J_star_t*rpr_leg4_link2_mass
     rpr_leg4_J_star_t_4 = rpr_leg4_J_star_t_2*rpr_leg4_link2_mass
     # (potential) potential energy
-    rpr_leg4_potential_t = (
+    rpr_leg4_potential_t = gravity_x*rpr_leg4_base_frame_xx + gravity_y*rpr_leg4_base_frame_yx
+    rpr_leg4_potential_t_2 = gravity_x*rpr_leg4_base_frame_xy + gravity_y*rpr_leg4_base_frame_yy
+    rpr_leg4_potential_t_3 = (
     rpr_leg4_base_frame_xx*rpr_leg4_base_point_x + rpr_leg4_base_frame_yx*rpr_leg4_base_point_y
     )
-    rpr_leg4_potential_t_2 = (
+    rpr_leg4_potential_t_4 = (
     rpr_leg4_base_frame_xy*rpr_leg4_base_point_x + rpr_leg4_base_frame_yy*rpr_leg4_base_point_y
     )
     m_star_rpr_leg4 = np.sum(np.broadcast_to(rpr_leg4_link2_mass, _rpr_leg4))
@@ -730,19 +728,17 @@ def _prepare(p):
         (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
-                    rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
-                    rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
-                    rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
-                    rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x,
-                    rpr_leg4_platform_point_y,),
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
@@ -792,22 +788,21 @@ def _prepare(p):
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
-                    rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
-                    rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
-                    rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
-                    rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link2_mass,
-                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+                    rpr_leg4_link2_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
@@ -815,19 +810,19 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
-                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+                    rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+                    rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+                    rpr_potential_t_2, rpr_potential_t_3, rpr_potential_t_4,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
-                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
-                    rpr_leg4_link1_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
-                    rpr_leg4_potential_t, rpr_leg4_potential_t_2,),
+        (rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+                    rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+                    rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+                    rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link1_mass,
+                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y, rpr_leg4_potential_t,
+                    rpr_leg4_potential_t_2, rpr_leg4_potential_t_3, rpr_leg4_potential_t_4,),
                 ),
             ),
         ),
@@ -1882,22 +1877,24 @@ def _run_dynamics(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2016,29 +2013,33 @@ def _run_dynamics(m, X, V):
         rpr_leg4_rel_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_bias_in_axes1_y
         # (rpr_leg4-qdd_1_o) remainder of: acceleration of joint 1
         rpr_leg4_qdd_1_o = inv_rpr_leg4_q_2*rpr_leg4_rel_o_in_axes1_y
-        # (rpr_leg4-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_in_axes1_x_2 = (
+        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = (
         axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
         )
-        rpr_leg4_g_in_axes1_y_2 = (
+        rpr_leg4_g_in_axes1_y = (
         axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
         )
+        # (rpr_leg4-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_leg4_acc_2_o_in_axes1_x = (
-        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x_2 -
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x -
             axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_t
         )
-        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y_2
+        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_t = rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x
         # (rpr_leg4-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_o_in_axes1_x = rpr_leg4_phi_2_t - rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1_o
+        # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_leg4_mu_1_t = (
+        rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x -
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y
+        )
         # (rpr_leg4-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_leg4_mu_1_o_in_axes1_z = (
         rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1_o +
-            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
-            rpr_leg4_g_in_axes1_x_2*rpr_leg4_h_1_in_spec1_y -
-            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
-            rpr_leg4_g_in_axes1_y_2*rpr_leg4_h_1_in_spec1_x
+            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x - rpr_leg4_mu_1_t -
+            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_leg4_c_t = -rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y
@@ -2379,22 +2380,24 @@ def _run_Z(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2476,29 +2479,33 @@ def _run_Z(m, X, V):
         rpr_leg4_rel_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_bias_in_axes1_y
         # (rpr_leg4-qdd_1_o) remainder of: acceleration of joint 1
         rpr_leg4_qdd_1_o = inv_rpr_leg4_q_2*rpr_leg4_rel_o_in_axes1_y
-        # (rpr_leg4-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_in_axes1_x_2 = (
+        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = (
         axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
         )
-        rpr_leg4_g_in_axes1_y_2 = (
+        rpr_leg4_g_in_axes1_y = (
         axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
         )
+        # (rpr_leg4-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         rpr_leg4_acc_2_o_in_axes1_x = (
-        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x_2 -
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x -
             axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_t
         )
-        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y_2
+        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_t = rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x
         # (rpr_leg4-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_o_in_axes1_x = rpr_leg4_phi_2_t - rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1_o
+        # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_leg4_mu_1_t = (
+        rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x -
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y
+        )
         # (rpr_leg4-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_leg4_mu_1_o_in_axes1_z = (
         rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1_o +
-            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
-            rpr_leg4_g_in_axes1_x_2*rpr_leg4_h_1_in_spec1_y -
-            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
-            rpr_leg4_g_in_axes1_y_2*rpr_leg4_h_1_in_spec1_x
+            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x - rpr_leg4_mu_1_t -
+            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_leg4_c_t = -rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y
@@ -2591,7 +2598,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 236 mul, 167 add, 4 div, 4 sqrt, 0 trig
+# required: 228 mul, 167 add, 4 div, 4 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -2641,10 +2648,10 @@ def _run_required(m, X, V, A):
     R_t_t, R_t_t_2, R_a_rpr_z = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -2658,9 +2665,6 @@ def _run_required(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -2691,18 +2695,18 @@ def _run_required(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2732,12 +2736,11 @@ def _run_required(m, X, V, A):
     R_t_t_3, R_t_t_4, R_a_rpr_leg4_z = [0.0] * 3
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
-            rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
-            rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
-            rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
-            rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x,
-            rpr_leg4_platform_point_y,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+            rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
         rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
@@ -2757,9 +2760,6 @@ def _run_required(m, X, V, A):
         rpr_leg4_q_2 = rpr_leg4_branch_1*sqrt(rpr_leg4_q_2_t)
         # (rpr_leg4-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_leg4_q_2 = 1.0/rpr_leg4_q_2
-        rpr_leg4_c_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_x
-        # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_leg4_s_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_y
         # (rpr_leg4-S_dot) velocity of the connection point
         axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_q_2*rpr_leg4_S_x
         axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_q_2*rpr_leg4_S_y
@@ -2799,20 +2799,26 @@ def _run_required(m, X, V, A):
         # (rpr_leg4-qdd_1) acceleration of joint 1
         rpr_leg4_qdd_1 = inv_rpr_leg4_q_2*rpr_leg4_rel_in_axes1_y
         # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_in_axes1_x = rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1
-        rpr_leg4_g_in_axes1_y = rpr_leg4_acc_2_t_2*rpr_leg4_c_1 - rpr_leg4_acc_2_t*rpr_leg4_s_1
+        rpr_leg4_g_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
+        )
+        rpr_leg4_g_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
+        )
         rpr_leg4_acc_2_in_axes1_x = rpr_leg4_S_ddot_in_axes1_x - rpr_leg4_g_in_axes1_x
         rpr_leg4_acc_2_in_axes1_y = rpr_leg4_S_ddot_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_t = rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x
         rpr_leg4_phi_2_in_axes1_x = rpr_leg4_phi_2_t - rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1
         # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_leg4_mu_1_t = (
+        rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x -
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y
+        )
         rpr_leg4_mu_1_in_axes1_z = (
         rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1 +
-            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
-            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
-            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
-            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
+            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x - rpr_leg4_mu_1_t -
+            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_leg4_c_t = -rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y
@@ -3211,12 +3217,13 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 216 mul, 140 add, 4 div, 4 sqrt, 0 trig
+# legs: 208 mul, 140 add, 4 div, 4 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3244,11 +3251,10 @@ def _run_legs(m, X, V, A):
     out_actuator = m.zeros("actuator")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -3262,9 +3268,6 @@ def _run_legs(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -3295,18 +3298,18 @@ def _run_legs(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -3334,12 +3337,11 @@ def _run_legs(m, X, V, A):
         out_actuator[_actuator_rpr[1][leg]] = axis_x_rpr_axes1_y
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
-            rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
-            rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
-            rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
-            rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link2_mass,
-            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+            rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+            rpr_leg4_link2_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
         rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
@@ -3359,9 +3361,6 @@ def _run_legs(m, X, V, A):
         rpr_leg4_q_2 = rpr_leg4_branch_1*sqrt(rpr_leg4_q_2_t)
         # (rpr_leg4-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_leg4_q_2 = 1.0/rpr_leg4_q_2
-        rpr_leg4_c_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_x
-        # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_leg4_s_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_y
         # (rpr_leg4-S_dot) velocity of the connection point
         axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_q_2*rpr_leg4_S_x
         axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_q_2*rpr_leg4_S_y
@@ -3401,20 +3400,26 @@ def _run_legs(m, X, V, A):
         # (rpr_leg4-qdd_1) acceleration of joint 1
         rpr_leg4_qdd_1 = inv_rpr_leg4_q_2*rpr_leg4_rel_in_axes1_y
         # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_in_axes1_x = rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1
-        rpr_leg4_g_in_axes1_y = rpr_leg4_acc_2_t_2*rpr_leg4_c_1 - rpr_leg4_acc_2_t*rpr_leg4_s_1
+        rpr_leg4_g_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
+        )
+        rpr_leg4_g_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
+        )
         rpr_leg4_acc_2_in_axes1_x = rpr_leg4_S_ddot_in_axes1_x - rpr_leg4_g_in_axes1_x
         rpr_leg4_acc_2_in_axes1_y = rpr_leg4_S_ddot_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_leg4_phi_2_t = rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x
         rpr_leg4_phi_2_in_axes1_x = rpr_leg4_phi_2_t - rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1
         # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_leg4_mu_1_t = (
+        rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x -
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y
+        )
         rpr_leg4_mu_1_in_axes1_z = (
         rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1 +
-            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
-            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
-            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
-            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
+            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x - rpr_leg4_mu_1_t -
+            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_leg4_c_t = -rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y
@@ -3472,11 +3477,11 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
-            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
-            rpr_potential_t_2,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+            rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,
+            rpr_potential_t_3, rpr_potential_t_4,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -3493,31 +3498,29 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
-        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
-        rpr_potential_t_3 = (
-        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+        rpr_potential_t_5 = (
+        (rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x +
+            rpr_h_2_in_spec1_x + rpr_link1_mass*(rpr_c_1*rpr_potential_t_3 +
+            rpr_potential_t_4*rpr_s_1)) + (rpr_c_1*rpr_potential_t_2 -
+            rpr_potential_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_4 - rpr_potential_t_3*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
             0.62)
         )
         # (potential) potential energy
-        potential_t_2 += rpr_potential_t_3
+        potential_t_2 += rpr_potential_t_5
     potential_rpr_leg4, = [0.0] * 1
     for leg, k in legs[1]:
         (
-        rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-            rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
-            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
-            rpr_leg4_link1_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
-            rpr_leg4_potential_t, rpr_leg4_potential_t_2,
+        rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+            rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+            rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+            rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link1_mass,
+            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y, rpr_leg4_potential_t,
+            rpr_leg4_potential_t_2, rpr_leg4_potential_t_3, rpr_leg4_potential_t_4,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
         rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
@@ -3540,23 +3543,22 @@ def _run_potential(m, X):
         rpr_leg4_c_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_x
         # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
         rpr_leg4_s_1 = inv_rpr_leg4_q_2*rpr_leg4_S_in_turn1_y
-        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_in_axes1_x = rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1
-        rpr_leg4_g_in_axes1_y = rpr_leg4_acc_2_t_2*rpr_leg4_c_1 - rpr_leg4_acc_2_t*rpr_leg4_s_1
         # (potential) potential energy
-        rpr_leg4_potential_t_3 = (
-        rpr_leg4_g_in_axes1_x*(rpr_leg4_h_1_in_spec1_x + rpr_leg4_h_2_in_spec1_x +
-            rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t +
-            rpr_leg4_potential_t_2*rpr_leg4_s_1)) + rpr_leg4_g_in_axes1_y*(rpr_leg4_h_1_in_spec1_y
-            + rpr_leg4_h_2_in_spec1_y + rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t_2 -
-            rpr_leg4_potential_t*rpr_leg4_s_1))
+        rpr_leg4_potential_t_5 = (
+        (rpr_leg4_c_1*rpr_leg4_potential_t +
+            rpr_leg4_potential_t_2*rpr_leg4_s_1)*(rpr_leg4_h_1_in_spec1_x +
+            rpr_leg4_h_2_in_spec1_x + rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t_3 +
+            rpr_leg4_potential_t_4*rpr_leg4_s_1)) + (rpr_leg4_c_1*rpr_leg4_potential_t_2 -
+            rpr_leg4_potential_t*rpr_leg4_s_1)*(rpr_leg4_h_1_in_spec1_y + rpr_leg4_h_2_in_spec1_y
+            + rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t_4 -
+            rpr_leg4_potential_t_3*rpr_leg4_s_1))
         )
         ok = (
         ok & (abs(rpr_leg4_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_leg4_q_2) >
             _TOLERANCE * 0.62)
         )
         # (potential) potential energy
-        potential_rpr_leg4 += -rpr_leg4_potential_t_3
+        potential_rpr_leg4 += -rpr_leg4_potential_t_5
     # (potential) potential energy
     potential = potential_rpr_leg4 - potential_t - potential_t_2
     # (potential) potential energy

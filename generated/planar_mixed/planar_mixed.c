@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && PLANAR_MIXED_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -164,6 +189,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -190,6 +216,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -249,19 +276,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -309,10 +339,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -364,6 +396,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -728,9 +761,6 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         /* (rpr-h_2) first moment of link 2 about the connection point */
         const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
         const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
         const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
             rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
@@ -747,13 +777,13 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
         /* (potential) potential energy */
-        const real rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x +
+        const real rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
+        const real rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
+        const real rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x +
             rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
+        const real rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
         KEEP_OF_LEG(rpr_J_group_1_in_axes1_zz);
-        KEEP_OF_LEG(rpr_acc_2_t);
-        KEEP_OF_LEG(rpr_acc_2_t_2);
         KEEP_OF_LEG(rpr_base_frame_xx);
         KEEP_OF_LEG(rpr_base_frame_xy);
         KEEP_OF_LEG(rpr_base_frame_yx);
@@ -771,6 +801,8 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         KEEP_OF_LEG(rpr_platform_point_y);
         KEEP_OF_LEG(rpr_potential_t);
         KEEP_OF_LEG(rpr_potential_t_2);
+        KEEP_OF_LEG(rpr_potential_t_3);
+        KEEP_OF_LEG(rpr_potential_t_4);
         m_star_of_legs += rpr_link2_mass;
         h_star_in_platform_x_of_legs += rpr_h_star_t;
         h_star_in_platform_y_of_legs += rpr_h_star_t_2;
@@ -1322,6 +1354,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1338,6 +1371,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1347,6 +1381,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1373,6 +1408,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1403,6 +1439,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1523,10 +1560,10 @@ typedef struct {
     real prr_q_x, prr_q_y, prr_S_in_axes0_x, prr_disc_1, prr_q_1_t, prr_c_2, prr_s_2,
         prr_v_2_in_axes0_x, prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t,
         prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_g_in_axes2_x,
-        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x,
-        prr_S_dot_y, prr_qd_1_t, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
-        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_Q_xx, prr_Q_yy, prr_Q_xy, prr_M_ta_t,
-        prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y, prr_Z_a_t, prr_acc_2_in_axes2_x,
+        prr_g_in_axes2_y, prr_H_a_1_z, prr_a_p_x, prr_a_p_y, prr_S_dot_x, prr_S_dot_y, prr_qd_1_t,
+        prr_u_1_x, prr_u_1_y, prr_bias_t, prr_c_t, prr_c_t_2, prr_S_ddot_in_axes2_x,
+        prr_S_ddot_in_axes2_y, prr_qdd_1_t, prr_qdd_1, prr_U_x, prr_U_y, prr_Z_a_t, prr_Q_xx,
+        prr_Q_yy, prr_Q_xy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t, prr_acc_2_in_axes2_x,
         prr_acc_2_in_axes2_y, prr_c_in_axes2_x, prr_c_in_axes2_y;
 } values_prr;
 
@@ -1589,22 +1626,24 @@ INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
     v->prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
 }
 
-INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_prr *v)
+INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *V, values_prr *v)
 {
     /* (prr-S_dot) velocity of the connection point */
     const real omega_z = V[2*w + j];
-    v->prr_S_dot_t = omega_z*v->prr_q_y;
-    v->prr_S_dot_t_2 = omega_z*v->prr_q_x;
     const real t_dot_x = V[0*w + j];
-    v->prr_S_dot_x = t_dot_x - v->prr_S_dot_t;
+    v->prr_S_dot_x = t_dot_x - omega_z*v->prr_q_y;
     const real t_dot_y = V[1*w + j];
-    v->prr_S_dot_y = t_dot_y + v->prr_S_dot_t_2;
+    v->prr_S_dot_y = t_dot_y + omega_z*v->prr_q_x;
     /* (prr-qd_1) rate of joint 1 */
     v->prr_qd_1_t = -v->prr_w_1_t*(v->prr_S_dot_x*m->prr_base_frame_xy[i] +
         v->prr_S_dot_y*m->prr_base_frame_yy[i]);
     /* (prr-W_2) centripetal tensor of link 2 */
     const real prr_W_2_t = v->prr_qd_1_t*v->prr_qd_1_t;
+    /* (prr-u_1) centripetal acceleration of the connection point */
+    const real W_p_xx = s[2*w + j];
+    v->prr_u_1_x = W_p_xx*v->prr_q_x;
+    v->prr_u_1_y = W_p_xx*v->prr_q_y;
     /* (prr-bias) acceleration of the connection point at zero joint accelerations */
     v->prr_bias_t = m->prr_platform_joint_offset_x[i]*v->prr_qd_1_t*v->prr_qd_1_t;
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
@@ -1613,12 +1652,11 @@ INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->prr_c_t_2 = prr_W_2_t*m->prr_h_2_in_spec2_y[i];
 }
 
-INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
+INLINE void stage_prr_A_V_X(values_prr *v)
 {
     /* (prr-S_ddot) acceleration of the connection point */
-    const real omega_z = V[2*w + j];
-    const real prr_S_ddot_x = v->prr_a_p_x - omega_z*v->prr_S_dot_t_2;
-    const real prr_S_ddot_y = v->prr_a_p_y - omega_z*v->prr_S_dot_t;
+    const real prr_S_ddot_x = v->prr_a_p_x + v->prr_u_1_x;
+    const real prr_S_ddot_y = v->prr_a_p_y + v->prr_u_1_y;
     v->prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*prr_S_ddot_x -
         v->axis_y_prr_axes2_x*prr_S_ddot_y;
     v->prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
@@ -1630,6 +1668,52 @@ INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
         prr_rel_in_axes2_x*v->prr_s_2);
     v->prr_qdd_1 = v->prr_c_2*prr_rel_in_axes2_x - v->prr_S_ddot_in_axes2_y*v->prr_s_2 +
         v->prr_qdd_1_t*v->prr_v_2_in_axes0_x;
+}
+
+INLINE void stage_prr_Z_dynamics(const prepared *m, size_t i, values_prr *v)
+{
+    /* (prr-u_1) centripetal acceleration of the connection point */
+    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_u_1_x -
+        v->axis_y_prr_axes2_x*v->prr_u_1_y;
+    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*v->prr_u_1_y +
+        v->axis_y_prr_axes2_x*v->prr_u_1_x;
+    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
+    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
+        prr_rel_o_in_axes2_x*v->prr_s_2);
+    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
+    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
+        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
+        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
+    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
+    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
+    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
+    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
+    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
+        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
+        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
+    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
+    const real prr_c_o_in_axes2_x = v->prr_c_t -
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
+        prr_c_o_t*v->prr_s_2;
+    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
+        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
+        v->prr_c_2*prr_c_o_t;
+    /* (prr-U) velocity and gravity terms of the leg force */
+    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+    /* (Z_a) rotational part of Z */
+    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
 }
 
 INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
@@ -1675,56 +1759,6 @@ INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
     v->prr_M_aa_t = v->prr_M_ta_t_2*v->prr_q_x - v->prr_M_ta_t*v->prr_q_y;
 }
 
-INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
-    values_prr *v)
-{
-    /* (prr-u_1) centripetal acceleration of the connection point */
-    const real W_p_xx = s[2*w + j];
-    const real prr_u_1_x = W_p_xx*v->prr_q_x;
-    const real prr_u_1_y = W_p_xx*v->prr_q_y;
-    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x -
-        v->axis_y_prr_axes2_x*prr_u_1_y;
-    const real prr_u_1_in_axes2_y = v->axis_x_prr_axes2_x*prr_u_1_y +
-        v->axis_y_prr_axes2_x*prr_u_1_x;
-    /* (prr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + v->prr_bias_t;
-    /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real prr_B_2_o_in_axes2_xy = v->prr_w_1_t*(v->prr_c_2*prr_u_1_in_axes2_y +
-        prr_rel_o_in_axes2_x*v->prr_s_2);
-    /* (prr-acc_1_o) remainder of: acceleration of the reference point of link 1, less gravity */
-    const real prr_acc_1_o_in_axes0_x = v->prr_c_2*prr_rel_o_in_axes2_x -
-        m->prr_g_in_axes0_x[i] - v->prr_s_2*prr_u_1_in_axes2_y +
-        prr_B_2_o_in_axes2_xy*v->prr_v_2_in_axes0_x;
-    /* (prr-f_1_o) remainder of: inertia force of link 1 less its weight */
-    const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*m->prr_link1_mass[i];
-    /* (prr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_g_in_axes2_x;
-    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y - v->prr_g_in_axes2_y;
-    /* (prr-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*m->prr_h_2_in_spec2_x[i] -
-        prr_acc_2_o_in_axes2_x*m->prr_h_2_in_spec2_y[i] -
-        prr_B_2_o_in_axes2_xy*m->prr_J_2_in_spec2_zz[i];
-    /* (prr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real prr_c_o_t = v->prr_w_1_t*(prr_mu_2_o_in_axes2_z -
-        prr_f_1_o_in_axes0_x*v->prr_v_2_in_axes0_x);
-    const real prr_c_o_in_axes2_x = v->prr_c_t -
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_y[i] - v->prr_c_2*prr_f_1_o_in_axes0_x +
-        prr_c_o_t*v->prr_s_2;
-    const real prr_c_o_in_axes2_y = v->prr_c_t_2 +
-        prr_B_2_o_in_axes2_xy*m->prr_h_2_in_spec2_x[i] + prr_f_1_o_in_axes0_x*v->prr_s_2 +
-        v->prr_c_2*prr_c_o_t;
-    /* (prr-U) velocity and gravity terms of the leg force */
-    v->prr_U_x = -v->axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-        v->axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-    v->prr_U_y = v->axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-        v->axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
-    /* (Z_a) rotational part of Z */
-    v->prr_Z_a_t = v->prr_U_y*v->prr_q_x - v->prr_U_x*v->prr_q_y;
-}
-
 INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 {
     /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
@@ -1749,13 +1783,13 @@ INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
 }
 
 typedef struct {
-    real rpr_q_x, rpr_q_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x, axis_x_rpr_axes1_y,
-        rpr_H_a_2_z, rpr_c_1, rpr_s_1, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_a_p_x, rpr_a_p_y,
-        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx, rpr_u_1_t, rpr_u_1_y,
-        rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x, rpr_S_ddot_in_axes1_y,
-        rpr_qdd_1, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x,
-        rpr_U_y, rpr_Z_a_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y, rpr_phi_2_in_axes1_x,
-        rpr_c_in_axes1_y;
+    real rpr_q_x, rpr_q_y, rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2,
+        axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_g_in_axes1_x, rpr_g_in_axes1_y, rpr_mu_1_t,
+        rpr_H_a_2_z, rpr_a_p_x, rpr_a_p_y, rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx,
+        rpr_u_1_t, rpr_u_1_y, rpr_bias_in_axes1_y, rpr_phi_2_t, rpr_c_t, rpr_S_ddot_in_axes1_x,
+        rpr_S_ddot_in_axes1_y, rpr_qdd_1, rpr_U_x, rpr_U_y, rpr_Z_a_t, rpr_Q_xx, rpr_Q_yy, rpr_Q_xy,
+        rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_acc_2_in_axes1_x, rpr_acc_2_in_axes1_y,
+        rpr_phi_2_in_axes1_x, rpr_c_in_axes1_y;
 } values_rpr;
 
 INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1770,27 +1804,27 @@ INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rpr_S_x = t_x - m->rpr_base_point_x[i] + v->rpr_q_x;
     const real t_y = X[1*w + j];
     const real rpr_S_y = t_y - m->rpr_base_point_y[i] + v->rpr_q_y;
-    const real rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] +
-        rpr_S_y*m->rpr_base_frame_yx[i];
-    const real rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] +
-        rpr_S_y*m->rpr_base_frame_yy[i];
+    v->rpr_S_in_turn1_x = rpr_S_x*m->rpr_base_frame_xx[i] + rpr_S_y*m->rpr_base_frame_yx[i];
+    v->rpr_S_in_turn1_y = rpr_S_x*m->rpr_base_frame_xy[i] + rpr_S_y*m->rpr_base_frame_yy[i];
     /* (rpr-q_2) displacement of joint 2 */
-    v->rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    v->rpr_q_2_t = v->rpr_S_in_turn1_x*v->rpr_S_in_turn1_x +
+        v->rpr_S_in_turn1_y*v->rpr_S_in_turn1_y;
     v->rpr_q_2 = m->rpr_branch_1[i]*root(v->rpr_q_2_t);
     /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
     v->inv_rpr_q_2 = 1/v->rpr_q_2;
     /* (rpr-S_dot) velocity of the connection point */
     v->axis_x_rpr_axes1_x = v->inv_rpr_q_2*rpr_S_x;
     v->axis_x_rpr_axes1_y = v->inv_rpr_q_2*rpr_S_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    v->rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*m->gravity_x +
+        v->axis_x_rpr_axes1_y*m->gravity_y;
+    v->rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*m->gravity_y -
+        v->axis_x_rpr_axes1_y*m->gravity_x;
+    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    v->rpr_mu_1_t = v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] -
+        v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i];
     /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
     v->rpr_H_a_2_z = v->axis_x_rpr_axes1_y*v->rpr_q_x - v->axis_x_rpr_axes1_x*v->rpr_q_y;
-    /* (rpr-c_1) */
-    v->rpr_c_1 = v->inv_rpr_q_2*rpr_S_in_turn1_x;
-    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rpr_s_1 = v->inv_rpr_q_2*rpr_S_in_turn1_y;
-    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-    v->rpr_g_in_axes1_x = m->rpr_acc_2_t[i]*v->rpr_c_1 + m->rpr_acc_2_t_2[i]*v->rpr_s_1;
-    v->rpr_g_in_axes1_y = m->rpr_acc_2_t_2[i]*v->rpr_c_1 - m->rpr_acc_2_t[i]*v->rpr_s_1;
 }
 
 INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
@@ -1848,6 +1882,41 @@ INLINE void stage_rpr_A_V_X(values_rpr *v)
     v->rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
 }
 
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-u_1) centripetal acceleration of the connection point */
+    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
+        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
+    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
+    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
+    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
+        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - v->rpr_g_in_axes1_x;
+    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_g_in_axes1_y;
+    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
+       */
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
+    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
+       reference points */
+    const real rpr_mu_1_o_in_axes1_z = rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
+    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
+        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    /* (rpr-U) velocity and gravity terms of the leg force */
+    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
+}
+
 INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -1872,47 +1941,6 @@ INLINE void stage_rpr_M_dynamics(const prepared *m, size_t i, values_rpr *v)
     v->rpr_M_aa_t = v->rpr_M_ta_t_2*v->rpr_q_x - v->rpr_M_ta_t*v->rpr_q_y;
 }
 
-INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
-{
-    /* (rpr-u_1) centripetal acceleration of the connection point */
-    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_u_1_y +
-        v->axis_x_rpr_axes1_y*v->rpr_u_1_t;
-    /* (rpr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - v->rpr_bias_in_axes1_y;
-    /* (rpr-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
-    /* (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real rpr_g_in_axes1_x_2 = v->axis_x_rpr_axes1_x*m->gravity_x +
-        v->axis_x_rpr_axes1_y*m->gravity_y;
-    const real rpr_g_in_axes1_y_2 = v->axis_x_rpr_axes1_x*m->gravity_y -
-        v->axis_x_rpr_axes1_y*m->gravity_x;
-    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*v->rpr_u_1_y -
-        v->axis_x_rpr_axes1_x*v->rpr_u_1_t - rpr_g_in_axes1_x_2;
-    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2;
-    /* (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
-       */
-    const real rpr_phi_2_o_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*rpr_qdd_1_o;
-    /* (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
-       reference points */
-    const real rpr_mu_1_o_in_axes1_z = rpr_g_in_axes1_x_2*m->rpr_h_1_in_spec1_y[i] -
-        rpr_g_in_axes1_y_2*m->rpr_h_1_in_spec1_x[i] +
-        rpr_acc_2_o_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        rpr_acc_2_o_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
-        m->rpr_J_group_1_in_axes1_zz[i]*rpr_qdd_1_o;
-    /* (rpr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real rpr_c_o_in_axes1_y = v->rpr_c_t - m->rpr_h_2_in_spec1_x[i]*rpr_qdd_1_o -
-        v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
-    /* (rpr-U) velocity and gravity terms of the leg force */
-    v->rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-    v->rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
-    /* (Z_a) rotational part of Z */
-    v->rpr_Z_a_t = v->rpr_U_y*v->rpr_q_x - v->rpr_U_x*v->rpr_q_y;
-}
-
 INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
 {
     /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
@@ -1921,10 +1949,8 @@ INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
     /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
     v->rpr_phi_2_in_axes1_x = v->rpr_phi_2_t - m->rpr_h_2_in_spec1_y[i]*v->rpr_qdd_1;
     /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-    const real rpr_mu_1_in_axes1_z = v->rpr_g_in_axes1_x*m->rpr_h_1_in_spec1_y[i] -
-        v->rpr_g_in_axes1_y*m->rpr_h_1_in_spec1_x[i] +
-        v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
-        v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
+    const real rpr_mu_1_in_axes1_z = v->rpr_acc_2_in_axes1_y*m->rpr_h_2_in_spec1_x[i] -
+        v->rpr_mu_1_t - v->rpr_acc_2_in_axes1_x*m->rpr_h_2_in_spec1_y[i] +
         m->rpr_J_group_1_in_axes1_zz[i]*v->rpr_qdd_1;
     /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1939,8 +1965,8 @@ typedef struct {
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
         rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
-        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
-        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+        rrr_U_x, rrr_U_y, rrr_Z_a_t, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2,
+        rrr_M_aa_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -2077,44 +2103,6 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
-        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-    /* (M_ta) coupling block of M */
-    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
-    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
-}
-
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-u_1) centripetal acceleration of the connection point */
@@ -2164,6 +2152,44 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
         v->axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
     /* (Z_a) rotational part of Z */
     v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
 }
 
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
@@ -2226,6 +2252,99 @@ INLINE void any_place_prr(size_t w, size_t k, size_t at, size_t count, const rea
     t->total[k] += o[5*count + at];
 }
 
+INLINE void any_sums_rpr(size_t k, size_t count, int add, const values_rpr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rpr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rpr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rpr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rpr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rpr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rpr_2(size_t k, size_t count, int add, const values_rpr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rpr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rpr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rpr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rpr(size_t k, size_t count, const values_rpr *v, real *o)
+{
+    /* (rpr-w_2) reciprocal vector 2 */
+    o[0*count + k] = v->axis_x_rpr_axes1_x;
+    o[1*count + k] = v->axis_x_rpr_axes1_y;
+    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rpr_H_a_2_z;
+}
+
+INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
+{
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_w_1_x;
+    o[1*count + k] = v->rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rrr_H_a_1_z;
+}
+
+INLINE void any_sums_prr(size_t k, size_t count, int add, const values_prr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->prr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->prr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->prr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->prr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->prr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->prr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_prr_2(size_t k, size_t count, int add, const values_prr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->prr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->prr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->prr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_prr(size_t k, size_t count, const values_prr *v, real *o)
+{
+    /* (prr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->prr_w_1_x;
+    o[1*count + k] = v->prr_w_1_y;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->prr_H_a_1_z;
+}
+
 INLINE void any_place_rpr_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -2237,7 +2356,17 @@ INLINE void any_place_rrr_2(size_t k, size_t at, size_t count, const real *o, st
     t->singular[k] += o[1*count + at];
 }
 
-INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
+INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
+    *v, real *s)
+{
+    stage_V(w, k, V, v);
+    stage_X(m, w, k, X, v);
+    s[0*w + k] = v->R_xx;
+    s[1*w + k] = v->R_yx;
+    s[2*w + k] = v->W_p_xx;
+}
+
+INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s)
 {
     stage_X(m, w, k, X, v);
     s[0*w + k] = v->R_xx;
@@ -2278,30 +2407,14 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
-    stage_rpr_M_dynamics(m, i, &v);
     stage_rpr_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[8*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
+    stage_rpr_M_dynamics(m, i, &v);
+    any_sums_rpr(k, count, add, &v, terms);
+    any_sums_rpr_2(k, count, add, &v, terms + 6*count);
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2310,31 +2423,15 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_M_dynamics(m, i, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    stage_rrr_M_dynamics(m, i, &v);
+    any_sums_rrr(k, count, add, &v, terms);
+    any_sums_rrr_2(k, count, add, &v, terms + 6*count);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2342,59 +2439,43 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_Z_dynamics(m, i, &v);
     stage_prr_M_dynamics(m, i, &v);
-    stage_prr_Z_dynamics(m, w, i, j, s, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[6*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
+    any_sums_prr(k, count, add, &v, terms);
+    any_sums_prr_2(k, count, add, &v, terms + 6*count);
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[5*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[6*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[7*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2429,12 +2510,15 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_prr[9*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         dynamics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -2467,10 +2551,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[8*LANES], sums[9*LANES];
-    real o_rpr[5*LANES];
-    real o_rrr[6*LANES];
-    real o_prr[6*LANES];
+    ALIGNED real s[8*LANES], sums[9*LANES];
+    ALIGNED real o_rpr[5*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    ALIGNED real o_prr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         dynamics_before(m, LANES, k, X, V, &v, s);
@@ -2478,29 +2563,36 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr(LANES, k, k, LANES, o_prr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2522,15 +2614,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rpr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rpr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rpr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rpr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rpr(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -2541,18 +2625,10 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rrr(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2561,15 +2637,7 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.prr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.prr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.prr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.prr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.prr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_prr(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
@@ -2577,19 +2645,19 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[4*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[3*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2616,12 +2684,15 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_prr[6*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         M_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -2653,55 +2724,53 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[5*LANES], sums[6*LANES];
-    real o_rpr[LANES];
-    real o_rrr[2*LANES];
-    real o_prr[2*LANES];
+    ALIGNED real s[5*LANES], sums[6*LANES];
+    ALIGNED real o_rpr[LANES];
+    ALIGNED real o_rrr[2*LANES];
+    ALIGNED real o_prr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_prr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(const prepared *m, size_t w, size_t k, const real *X, const real *V, values
-    *v, real *s)
-{
-    stage_V(w, k, V, v);
-    stage_X(m, w, k, X, v);
-    s[0*w + k] = v->R_xx;
-    s[1*w + k] = v->R_yx;
-    s[2*w + k] = v->W_p_xx;
-}
-
 INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
@@ -2722,11 +2791,7 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rpr_X(m, w, i, j, s, X, &v);
     stage_rpr_V_X(m, w, i, j, V, &v);
     stage_rpr_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[2*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rpr_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -2738,14 +2803,10 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rrr_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2753,27 +2814,23 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_Z_dynamics(m, w, i, j, s, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.prr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.prr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, v.prr_Z_a_t);  /* Z_a_z_of_legs */
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_Z_dynamics(m, i, &v);
+    any_sums_prr_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[3*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[4*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[5*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2792,13 +2849,16 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    Z_before(m, 1, 0, X, V, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, V, terms_rpr, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         Z_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, V, terms_prr, o_prr);
     }
@@ -2831,40 +2891,48 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[6*LANES], sums[3*LANES];
-    real o_rpr[LANES];
-    real o_rrr[2*LANES];
-    real o_prr[2*LANES];
+    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real o_rpr[LANES];
+    ALIGNED real o_rrr[2*LANES];
+    ALIGNED real o_prr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        Z_before(m, LANES, k, X, V, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
         Z_between(m, LANES, k, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr_2(k, k, LANES, o_rpr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_rrr, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_2(k, k, LANES, o_prr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2876,14 +2944,10 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
-    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2891,15 +2955,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2907,14 +2967,10 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
-    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2924,13 +2980,16 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         H_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         H_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -2948,34 +3007,41 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[3*LANES];
-    real o_rpr[5*LANES];
-    real o_rrr[6*LANES];
-    real o_prr[6*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_rpr[5*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    ALIGNED real o_prr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prr(LANES, k, k, LANES, o_prr, H, t);
         }
@@ -2983,10 +3049,9 @@ INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, stat
 }
 
 /* ---- required ---- */
-INLINE void required_between(const prepared *m, size_t w, size_t k, const real *V, const real *A,
-    values *v, real *s)
+INLINE void required_between(const prepared *m, size_t w, size_t k, const real *A, values *v, real
+    *s)
 {
-    stage_V(w, k, V, v);
     stage_V_X(v);
     /* (a_t) acceleration of the platform origin, less gravity */
     const real t_ddot_x = A[0*w + k];
@@ -3020,18 +3085,14 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
     const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
         v.axis_x_rpr_axes1_y*v.rpr_phi_2_in_axes1_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, rpr_R_a_t);  /* R_a_z_of_legs */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
+    any_entries_rpr(k, count, &v, o);
     o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -3068,14 +3129,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3095,8 +3152,8 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
     /* (prr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3111,11 +3168,7 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, prr_R_a_t);  /* R_a_z_of_legs */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
+    any_entries_prr(k, count, &v, o);
     o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
 }
@@ -3132,14 +3185,14 @@ INLINE void required_place_prr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[3*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[4*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[5*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -3158,20 +3211,23 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             required_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, V, A, terms_rpr,
                 o_rpr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
                 o_rrr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             required_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, V, A, terms_prr,
                 o_prr);
@@ -3199,47 +3255,55 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
             sums[n] += terms_prr[n*LEGS(LEGS_OF_prr) + leg];
         }
     }
-    required_between(m, 1, 0, V, A, &v, s);
+    required_between(m, 1, 0, A, &v, s);
     required_after(1, 0, s, sums, required);
 }
 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[6*LANES], sums[3*LANES];
-    real o_rpr[4*LANES];
-    real o_rrr[5*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
-        required_between(m, LANES, k, V, A, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
+        required_between(m, LANES, k, A, &v, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rpr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rpr(LANES, k, k, LANES, o_rpr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_prr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_prr(LANES, k, k, LANES, o_prr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3251,15 +3315,19 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t i, s
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (rpr-q_1) displacement of joint 1 */
-    const real rpr_q_1 = angle(v.rpr_s_1, v.rpr_c_1);
+    const real rpr_q_1 = angle(rpr_s_1, rpr_c_1);
     /* (rpr-q_1) */
     o[0*count + k] = rpr_q_1;
     /* (rpr-q_2) displacement of joint 2 */
     o[1*count + k] = v.rpr_q_2;
-    o[3*count + k] = rpr_q_1 + v.rpr_q_2;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = rpr_q_1 + v.rpr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rpr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3284,9 +3352,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
     o[1*count + k] = rrr_q_2;
-    o[4*count + k] = rrr_q_1 + rrr_q_2;
-    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3312,8 +3380,8 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = prr_q_1;
     /* (prr-q_2) */
     o[1*count + k] = prr_q_2;
-    o[3*count + k] = prr_q_1 + prr_q_2;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
+    o[3*count + k] = prr_q_1 + prr_q_2;
 }
 
 INLINE void inverse_kinematics_place_prr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3332,13 +3400,16 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         inverse_kinematics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         inverse_kinematics_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, o_prr);
     }
@@ -3356,34 +3427,41 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_rpr[4*LANES];
-    real o_rrr[5*LANES];
-    real o_prr[4*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    ALIGNED real o_prr[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rpr(m, LANES, i, k, k, LANES, s, X, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rpr(LANES, k, k, LANES, o_rpr, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_prr(m, LANES, i, k, k, LANES, s, X, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_prr(LANES, k, k, LANES, o_prr, q, t);
         }
@@ -3401,9 +3479,9 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = v.rpr_qd_1;
     /* (rpr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rpr_S_dot_in_axes1_x;
-    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
 }
 
 INLINE void joint_rates_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3425,10 +3503,10 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3446,7 +3524,7 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
 {
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
     /* (prr-qd_1) rate of joint 1 */
     const real prr_qd_1 = v.prr_S_dot_x*m->prr_base_frame_xx[i] +
         v.prr_S_dot_y*m->prr_base_frame_yx[i] - v.prr_qd_1_t*v.prr_v_2_in_axes0_x;
@@ -3454,9 +3532,9 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = prr_qd_1;
     /* (prr-qd_2) rate of joint 2 */
     o[1*count + k] = v.prr_qd_1_t;
-    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[4*count + k] = prr_qd_1 + v.prr_qd_1_t;
 }
 
 INLINE void joint_rates_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3477,13 +3555,16 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_rates_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_rates_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, o_prr);
     }
@@ -3501,34 +3582,41 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_rpr[4*LANES];
-    real o_rrr[5*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rpr(LANES, k, k, LANES, o_rpr, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_prr(m, LANES, i, k, k, LANES, s, X, V, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_prr(LANES, k, k, LANES, o_prr, qd, t);
         }
@@ -3550,9 +3638,9 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = v.rpr_qdd_1;
     /* (rpr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = rpr_rel_in_axes1_x;
-    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
     o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[3*count + k] = v.rpr_qdd_1 + rpr_rel_in_axes1_x;
 }
 
 INLINE void joint_accelerations_place_rpr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3576,10 +3664,10 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_qdd_2;
-    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3598,15 +3686,15 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t i, 
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     /* (prr-qdd_1) acceleration of joint 1 */
     o[0*count + k] = v.prr_qdd_1;
     /* (prr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prr_qdd_1_t;
-    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
     o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[4*count + k] = v.prr_qdd_1 + v.prr_qdd_1_t;
 }
 
 INLINE void joint_accelerations_place_prr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3627,13 +3715,16 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         joint_accelerations_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         joint_accelerations_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
     }
@@ -3651,34 +3742,41 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[3*LANES];
-    real o_rpr[4*LANES];
-    real o_rrr[5*LANES];
-    real o_prr[5*LANES];
+    ALIGNED real s[3*LANES];
+    ALIGNED real o_rpr[4*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    ALIGNED real o_prr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
-        any_before(m, LANES, k, X, &v, s);
+        any_before(m, LANES, k, X, V, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rpr(m, LANES, i, k, k, LANES, s, X, V, A, o_rpr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rpr(LANES, k, k, LANES, o_rpr, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_prr(m, LANES, i, k, k, LANES, s, X, V, A, o_prr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_prr(LANES, k, k, LANES, o_prr, qdd, t);
         }
@@ -3748,9 +3846,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-w_1) reciprocal vector 1 */
     o[2*count + k] = v.rrr_w_1_x;
     o[3*count + k] = v.rrr_w_1_y;
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3770,8 +3868,8 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_
     values_prr v;
     stage_prr_X(m, w, i, j, s, X, &v);
     stage_prr_A_X(w, j, A, &v);
-    stage_prr_V_X(m, w, i, j, V, &v);
-    stage_prr_A_V_X(w, j, V, &v);
+    stage_prr_V_X(m, w, i, j, s, V, &v);
+    stage_prr_A_V_X(&v);
     stage_prr_legs_required(m, i, &v);
     /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
     const real prr_c_true_in_axes2_x = v.prr_c_in_axes2_x -
@@ -3813,18 +3911,21 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     clear(leg_force, 3*NL);
     clear(actuator, 9);
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             legs_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), s, X, V, A, o_rpr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             legs_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), s, X, V, A, o_prr);
         }
@@ -3857,14 +3958,20 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_rpr v;
     stage_rpr_X(m, w, i, j, s, X, &v);
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
     /* (potential) */
-    const real rpr_potential_t_3 = v.rpr_g_in_axes1_x*(m->rpr_h_1_in_spec1_x[i] +
-        m->rpr_h_2_in_spec1_x[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t[i] +
-        m->rpr_potential_t_2[i]*v.rpr_s_1)) + v.rpr_g_in_axes1_y*(m->rpr_h_1_in_spec1_y[i] +
-        m->rpr_h_2_in_spec1_y[i] + m->rpr_link1_mass[i]*(v.rpr_c_1*m->rpr_potential_t_2[i] -
-        m->rpr_potential_t[i]*v.rpr_s_1));
+    const real rpr_potential_t_5 = (rpr_c_1*m->rpr_potential_t[i] +
+        m->rpr_potential_t_2[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_x[i] + m->rpr_h_2_in_spec1_x[i]
+        + m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_3[i] +
+        m->rpr_potential_t_4[i]*rpr_s_1)) + (rpr_c_1*m->rpr_potential_t_2[i] -
+        m->rpr_potential_t[i]*rpr_s_1)*(m->rpr_h_1_in_spec1_y[i] + m->rpr_h_2_in_spec1_y[i] +
+        m->rpr_link1_mass[i]*(rpr_c_1*m->rpr_potential_t_4[i] -
+        m->rpr_potential_t_3[i]*rpr_s_1));
     /* (potential) */
-    gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rpr_potential_t_5);  /* potential_t_2 */
     o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
 }
@@ -3884,8 +3991,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_3 */
-    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
 
 INLINE void potential_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3930,20 +4037,23 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
     values v;
-    any_before(m, 1, 0, X, &v, s);
+    any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
             potential_legs_rpr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr,
                 o_rpr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
                 o_rrr);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prr); ++k) {
             potential_legs_prr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr,
                 o_prr);
@@ -3998,23 +4108,19 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
     const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
         R(1.6129032258064517)*rpr_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rpr_spread_t = m->b_c_in_platform_x - m->rpr_platform_point_x[i];
     const real rpr_spread_t_2 = m->b_c_in_platform_y - m->rpr_platform_point_y[i];
     const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
-    /* (rpr-w_2) reciprocal vector 2 */
-    o[0*count + k] = v.axis_x_rpr_axes1_x;
-    o[1*count + k] = v.axis_x_rpr_axes1_y;
-    /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rpr_H_a_2_z;
+    any_entries_rpr(k, count, &v, o);
     /* (rpr-G) */
     o[3*count + k] = rpr_least_pivots;
-    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
-        rpr_least_pivots);
     o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
         LEAST_2);
+    o[5*count + k] = (v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y) + (v.rpr_H_a_2_z +
+        rpr_least_pivots);
 }
 
 INLINE void condition_place_rpr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4045,19 +4151,15 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
     /* (spread) */
     gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
     /* (rrr-G) */
     o[3*count + k] = rrr_least_pivots;
     o[4*count + k] = v.rrr_disc_1;
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-        v.rrr_disc_1));
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4088,18 +4190,14 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t i, size_t j, 
     const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
     /* (spread) */
     gather(&terms[2*count + k], add, prr_spread_t_3);  /* spread_prr */
-    /* (prr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prr_w_1_x;
-    o[1*count + k] = v.prr_w_1_y;
-    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.prr_H_a_1_z;
+    any_entries_prr(k, count, &v, o);
     /* (prr-G) */
     o[3*count + k] = prr_pivot;
     o[4*count + k] = v.prr_disc_1;
-    o[7*count + k] = (v.prr_w_1_x + v.prr_w_1_y) + (v.prr_H_a_1_z + (prr_pivot +
-        v.prr_disc_1));
     o[5*count + k] = UNLESS(v.prr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*m->prr_size[i]);
+    o[7*count + k] = (v.prr_w_1_x + v.prr_w_1_y) + (v.prr_H_a_1_z + (prr_pivot +
+        v.prr_disc_1));
 }
 
 INLINE void condition_place_prr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4117,7 +4215,7 @@ INLINE void condition_place_prr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_prr = sums[2*w + k];
     const real spread_rpr = sums[0*w + k];
     const real spread_rrr = sums[1*w + k];
@@ -4138,12 +4236,15 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         condition_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, s, X, terms_rpr, o_rpr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
+    IN_VECTORS(LEGS(LEGS_OF_prr))
     for (size_t k = 0; k < LEGS(LEGS_OF_prr); ++k) {
         condition_legs_prr(m, 1, k, 0, k, LEGS(LEGS_OF_prr), 0, s, X, terms_prr, o_prr);
     }
@@ -4188,8 +4289,8 @@ int planar_mixed_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -4211,8 +4312,8 @@ int planar_mixed_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4235,8 +4336,8 @@ int planar_mixed_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -4258,8 +4359,8 @@ int planar_mixed_inverse_kinematics(const prepared *m, const real *X, real *q_ou
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -4282,8 +4383,8 @@ int planar_mixed_joint_rates(const prepared *m, const real *X, const real *V, re
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4308,8 +4409,8 @@ int planar_mixed_joint_accelerations(const prepared *m, const real *X, const rea
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4339,8 +4440,8 @@ int planar_mixed_dynamics(const prepared *m, const real *X, const real *V, real 
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4354,6 +4455,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -4430,15 +4532,16 @@ int planar_mixed_inverse_dynamics(const prepared *m, const real *X, const real *
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -4483,10 +4586,10 @@ int planar_mixed_forward_dynamics(const prepared *m, const real *X, const real *
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4494,9 +4597,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

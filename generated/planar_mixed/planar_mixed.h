@@ -138,12 +138,12 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 1 legs of type rpr */
-    planar_mixed_real rpr_J_group_1_in_axes1_zz[1], rpr_acc_2_t[1], rpr_acc_2_t_2[1],
-            rpr_base_frame_xx[1], rpr_base_frame_xy[1], rpr_base_frame_yx[1], rpr_base_frame_yy[1],
-            rpr_base_point_x[1], rpr_base_point_y[1], rpr_branch_1[1], rpr_h_1_in_spec1_x[1],
-            rpr_h_1_in_spec1_y[1], rpr_h_2_in_spec1_x[1], rpr_h_2_in_spec1_y[1], rpr_link1_mass[1],
-            rpr_link2_mass[1], rpr_platform_point_x[1], rpr_platform_point_y[1], rpr_potential_t[1],
-            rpr_potential_t_2[1];
+    planar_mixed_real rpr_J_group_1_in_axes1_zz[1], rpr_base_frame_xx[1], rpr_base_frame_xy[1],
+            rpr_base_frame_yx[1], rpr_base_frame_yy[1], rpr_base_point_x[1], rpr_base_point_y[1],
+            rpr_branch_1[1], rpr_h_1_in_spec1_x[1], rpr_h_1_in_spec1_y[1], rpr_h_2_in_spec1_x[1],
+            rpr_h_2_in_spec1_y[1], rpr_link1_mass[1], rpr_link2_mass[1], rpr_platform_point_x[1],
+            rpr_platform_point_y[1], rpr_potential_t[1], rpr_potential_t_2[1], rpr_potential_t_3[1],
+            rpr_potential_t_4[1];
     /* 1 legs of type rrr */
     planar_mixed_real inv_rrr_rho2_1_t[1], inv_rrr_size[1], inv_rrr_size_t[1], inv_rrr_size_t_2[1],
             rrr_J_1_in_spec1_zz[1], rrr_J_2_in_spec2_zz[1], rrr_Jc_1_in_axes1_zz[1], rrr_Kd_1_t[1],
@@ -215,7 +215,7 @@ int planar_mixed_joint_rates(const planar_mixed_model *model, const planar_mixed
 size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
 
-/* Accelerations of all joints. 142 mul, 84 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 143 mul, 84 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_mixed_joint_accelerations(const planar_mixed_model *model, const planar_mixed_real *X,
     const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);
@@ -231,7 +231,7 @@ size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, co
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
     planar_mixed_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 245 mul, 169 add, 4 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 243 mul, 169 add, 4 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_mixed_inverse_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -262,7 +262,7 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     planar_mixed_real *wrench, planar_mixed_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 225 mul, 141 add, 4 div, 3 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 224 mul, 141 add, 4 div, 3 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
@@ -355,7 +355,7 @@ int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mi
 size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 142 mul, 84 add, 4 div, 3 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 143 mul, 84 add, 4 div, 3 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int planar_mixed_actuator_accelerations(const planar_mixed_model *model, const planar_mixed_real
     *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);

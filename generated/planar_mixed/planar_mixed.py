@@ -668,9 +668,6 @@ def _prepare(p):
     # (rpr-h_2) first moment of link 2 about the connection point
     rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
     rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
     rpr_J_group_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
@@ -693,8 +690,10 @@ def _prepare(p):
     rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
     rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
     # (potential) potential energy
-    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    rpr_potential_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_potential_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    rpr_potential_t_3 = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_4 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
     m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
     h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
     h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
@@ -967,11 +966,10 @@ def _prepare(p):
         (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
@@ -1064,10 +1062,10 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
@@ -1093,11 +1091,11 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
-                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
-                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
+        (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+                    rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+                    rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+                    rpr_potential_t_2, rpr_potential_t_3, rpr_potential_t_4,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -2176,22 +2174,24 @@ def _run_dynamics(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -2473,10 +2473,8 @@ def _run_dynamics(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -2990,22 +2988,24 @@ def _run_Z(m, X, V):
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_bias_in_axes1_y
         # (rpr-qdd_1_o) remainder of: acceleration of joint 1
         rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
+        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         # (rpr-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x_2 = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
-        rpr_g_in_axes1_y_2 = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_o_in_axes1_x = (
-        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x_2 - axis_x_rpr_axes1_x*rpr_u_1_t
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
         )
-        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y_2
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         # (rpr-phi_2_o) remainder of: inertia force of link 2 from its turning about its reference point
         rpr_phi_2_o_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         # (rpr-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         rpr_mu_1_o_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x_2*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y_2*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x -
+            rpr_mu_1_t - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -3195,10 +3195,8 @@ def _run_Z(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -3434,7 +3432,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 245 mul, 169 add, 4 div, 3 sqrt, 0 trig
+# required: 243 mul, 169 add, 4 div, 3 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -3484,10 +3482,10 @@ def _run_required(m, X, V, A):
     R_t_t, R_t_t_2, R_a_rpr_z = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -3501,9 +3499,6 @@ def _run_required(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -3534,18 +3529,18 @@ def _run_required(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -3746,10 +3741,8 @@ def _run_required(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -3766,12 +3759,15 @@ def _run_required(m, X, V, A):
         prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations
@@ -4124,10 +4120,8 @@ def _run_joint_rates(m, X, V):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -4147,7 +4141,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 142 mul, 84 add, 4 div, 3 sqrt, 0 trig
+# joint_accelerations: 143 mul, 84 add, 4 div, 3 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4177,6 +4171,8 @@ def _run_joint_accelerations(m, X, V, A):
     alpha_z = A_2
     ok = True
     out_qdd = m.zeros("qdd")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
         rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -4355,10 +4351,8 @@ def _run_joint_accelerations(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -4368,12 +4362,15 @@ def _run_joint_accelerations(m, X, V, A):
         prr_w_1_t = -1.0/prr_v_2_in_axes0_y
         # (prr-qd_1) rate of joint 1
         prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations
@@ -4394,7 +4391,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 225 mul, 141 add, 4 div, 3 sqrt, 0 trig
+# legs: 224 mul, 141 add, 4 div, 3 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     sin = m.sin
@@ -4426,13 +4423,14 @@ def _run_legs(m, X, V, A):
     ok = True
     out_leg_force = m.zeros("leg_force")
     out_actuator = m.zeros("actuator")
+    # (W_p) centripetal tensor of the platform
+    W_p_xx = -omega_z*omega_z
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
-            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
-            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -4446,9 +4444,6 @@ def _run_legs(m, X, V, A):
         rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rpr_q_2 = 1.0/rpr_q_2
-        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
-        # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
         axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
         axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
@@ -4479,18 +4474,18 @@ def _run_legs(m, X, V, A):
         # (rpr-qdd_1) acceleration of joint 1
         rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
         rpr_acc_2_in_axes1_x = rpr_S_ddot_in_axes1_x - rpr_g_in_axes1_x
         rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
         rpr_phi_2_t = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x
         rpr_phi_2_in_axes1_x = rpr_phi_2_t - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+        rpr_mu_1_t = rpr_g_in_axes1_y*rpr_h_1_in_spec1_x - rpr_g_in_axes1_x*rpr_h_1_in_spec1_y
         rpr_mu_1_in_axes1_z = (
-        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
-            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
-            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x - rpr_mu_1_t
+            - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_t = -rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y
@@ -4687,10 +4682,8 @@ def _run_legs(m, X, V, A):
             prr_S_y*prr_base_frame_yy)
         )
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_y
-        prr_S_dot_t_2 = omega_z*prr_q_x
-        prr_S_dot_x = t_dot_x - prr_S_dot_t
-        prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
         # (prr-v_2) velocity of the connection point per rate of joint 2
         prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
         prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
@@ -4707,12 +4700,15 @@ def _run_legs(m, X, V, A):
         prr_qd_1_t = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_1_t*prr_qd_1_t
+        # (prr-u_1) centripetal acceleration of the connection point
+        prr_u_1_x = W_p_xx*prr_q_x
+        prr_u_1_y = W_p_xx*prr_q_y
         # (prr-a_p) acceleration of the connection point without its centripetal part
         prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
         prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
-        prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
-        prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
+        prr_S_ddot_x = prr_a_p_x + prr_u_1_x
+        prr_S_ddot_y = prr_a_p_y + prr_u_1_y
         prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
         prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-bias) acceleration of the connection point at zero joint accelerations
@@ -4794,11 +4790,11 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
-            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
-            rpr_potential_t_2,
+        rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x,
+            rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link1_mass,
+            rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,
+            rpr_potential_t_3, rpr_potential_t_4,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
@@ -4815,22 +4811,20 @@ def _run_potential(m, X):
         rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
-        # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
-        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
         # (potential) potential energy
-        rpr_potential_t_3 = (
-        rpr_g_in_axes1_x*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            rpr_g_in_axes1_y*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
+        rpr_potential_t_5 = (
+        (rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x +
+            rpr_h_2_in_spec1_x + rpr_link1_mass*(rpr_c_1*rpr_potential_t_3 +
+            rpr_potential_t_4*rpr_s_1)) + (rpr_c_1*rpr_potential_t_2 -
+            rpr_potential_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t_4 - rpr_potential_t_3*rpr_s_1))
         )
         ok = (
         ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
             0.62)
         )
         # (potential) potential energy
-        potential_t_2 += rpr_potential_t_3
+        potential_t_2 += rpr_potential_t_5
     potential_t_3, = [0.0] * 1
     for leg, k in legs[1]:
         (

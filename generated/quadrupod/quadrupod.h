@@ -122,16 +122,16 @@ typedef struct {
     quadrupod_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
             ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
             ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
-            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
-            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
-            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
-            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
-            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
-            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
-            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
-            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
-            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_Sigma_2_in_axes2_zz[4], ups_base_frame_xx[4], ups_base_frame_xy[4],
+            ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4], ups_base_frame_yz[4],
+            ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4], ups_base_point_x[4],
+            ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4], ups_branch_2[4],
+            ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4], ups_h_2_in_spec2_z[4],
+            ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4], ups_h_3_in_spec2_z[4],
+            ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4], ups_h_group_2_in_axes2_z[4],
+            ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4], ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4],
+            ups_potential_t_4[4], ups_potential_t_5[4], ups_potential_t_6[4];
     /* 1 legs of type tube */
     quadrupod_real tube_J_group_2_in_axes2_xx[1], tube_J_group_2_in_axes2_xy[1],
             tube_J_group_2_in_axes2_xz[1], tube_J_group_2_in_axes2_yy[1],
@@ -172,19 +172,19 @@ extern const char *const quadrupod_ACTUATOR_NAMES[QUADRUPOD_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model);
 
-/* Inertia matrix M. 960 mul, 718 add, 13 div, 11 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 944 mul, 706 add, 13 div, 11 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int quadrupod_M(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *M);
 size_t quadrupod_M_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     quadrupod_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1038 mul, 757 add, 14 div, 11 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1026 mul, 753 add, 14 div, 11 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int quadrupod_Z(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real *V,
     quadrupod_real *Z);
 size_t quadrupod_Z_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 124 mul, 92 add, 4 div, 4 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 128 mul, 92 add, 4 div, 4 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int quadrupod_H(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *H);
 size_t quadrupod_H_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
@@ -210,21 +210,21 @@ int quadrupod_constraint_bias(const quadrupod_model *model, const quadrupod_real
 size_t quadrupod_constraint_bias_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, const quadrupod_real *V, quadrupod_real *bias, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 135 mul, 100 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 163 mul, 116 add,
    10 div, 10 sqrt, 10 trig. In: X (NQ). Out: q (NJ). */
 int quadrupod_inverse_kinematics(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *q);
 size_t quadrupod_inverse_kinematics_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *q, int *status);
 
-/* Rates of all joints. 408 mul, 259 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 392 mul, 247 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int quadrupod_joint_rates(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *rates);
 size_t quadrupod_joint_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of all joints. 626 mul, 404 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 610 mul, 392 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int quadrupod_joint_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);
@@ -232,14 +232,14 @@ size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t 
     quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1739 mul, 1316 add, 14 div, 11 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1727 mul, 1312 add, 14 div, 11 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H);
 size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
     const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1158 mul, 865
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1146 mul, 861
    add, 14 div, 11 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_inverse_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -250,7 +250,7 @@ size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, 
     *wrench, quadrupod_real *tau, quadrupod_real *lambda, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1158 mul, 865 add, 14 div, 11 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1146 mul, 861 add, 14 div, 11 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU), lambda (NC).
    */
 int quadrupod_inverse_dynamics_weighted(const quadrupod_model *model, const quadrupod_real *X,
@@ -261,7 +261,7 @@ size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, s
     *wrench, const quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1739 mul, 1316 add, 14 div, 11
+/* Acceleration A under the actuator forces tau and the wrench. 1727 mul, 1312 add, 14 div, 11
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int quadrupod_forward_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
@@ -282,7 +282,7 @@ size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_
     *wrench, quadrupod_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 1026 mul, 745 add, 14 div, 11 sqrt, 0 trig; inverse
+   give the forces of inverse_dynamics. 1014 mul, 741 add, 14 div, 11 sqrt, 0 trig; inverse
    dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (5 x 6). */
 int quadrupod_leg_reactions(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
@@ -301,7 +301,7 @@ size_t quadrupod_energy_batch(const quadrupod_model *model, size_t n, const quad
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 374 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (4), legs (5). */
 int quadrupod_condition(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *sigma, quadrupod_real *legs);
@@ -310,7 +310,7 @@ size_t quadrupod_condition_batch(const quadrupod_model *model, size_t n, const q
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   the legs. 374 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (5). */
 int quadrupod_condition_constrained(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *sigma, quadrupod_real *legs);
@@ -319,14 +319,14 @@ size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 370 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 374 mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int quadrupod_manipulability(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *measure, quadrupod_real *isotropy);
 size_t quadrupod_manipulability_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, quadrupod_real *measure, quadrupod_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 370
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 374
    mul, 261 add, 8 div, 22 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int quadrupod_singularity_distance(const quadrupod_model *model, const quadrupod_real *X,
@@ -337,7 +337,7 @@ size_t quadrupod_singularity_distance_batch(const quadrupod_model *model, size_t
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1158 mul, 865 add, 14 div, 11 sqrt,
+   negative forces: tau_max = -t keeps tensions of t at least. 1146 mul, 861 add, 14 div, 11 sqrt,
    0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
    or NULL), reference (NU, or NULL). Out: tau (NU), lambda (NC). */
 int quadrupod_force_distribution(const quadrupod_model *model, const quadrupod_real *X, const
@@ -371,7 +371,7 @@ int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X,
 size_t quadrupod_dissipation_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *dissipation, int *status);
 
-/* Generalised momentum M V. 960 mul, 718 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 944 mul, 706 add, 13 div, 11 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int quadrupod_momentum(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
     *V, quadrupod_real *momentum);
@@ -379,35 +379,35 @@ size_t quadrupod_momentum_batch(const quadrupod_model *model, size_t n, const qu
     const quadrupod_real *V, quadrupod_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 135 mul, 100 add, 10 div, 10 sqrt, 10 trig. In: X (NQ). Out: margins (NJ).
+   where there is none. 163 mul, 116 add, 10 div, 10 sqrt, 10 trig. In: X (NQ). Out: margins (NJ).
    */
 int quadrupod_joint_margins(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *margins);
 size_t quadrupod_joint_margins_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, quadrupod_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 135 mul, 100 add, 10 div, 10 sqrt,
+/* Whether all joints are within their limits of displacement. 163 mul, 116 add, 10 div, 10 sqrt,
    10 trig. In: X (NQ). Out: within (1). */
 int quadrupod_within_limits(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
     *within);
 size_t quadrupod_within_limits_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, quadrupod_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 135 mul, 100 add, 10 div, 10 sqrt,
+/* Displacements of the actuated joints, in the order of tau. 163 mul, 116 add, 10 div, 10 sqrt,
    10 trig. In: X (NQ). Out: q (NU). */
 int quadrupod_actuator_positions(const quadrupod_model *model, const quadrupod_real *X,
     quadrupod_real *q);
 size_t quadrupod_actuator_positions_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 408 mul, 259 add, 13 div, 11 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 392 mul, 247 add, 13 div, 11 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int quadrupod_actuator_rates(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, quadrupod_real *rates);
 size_t quadrupod_actuator_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
     *X, const quadrupod_real *V, quadrupod_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 626 mul, 404 add, 13 div, 11 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 610 mul, 392 add, 13 div, 11 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int quadrupod_actuator_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
     quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations);

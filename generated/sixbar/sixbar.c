@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && SIXBAR_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -160,6 +185,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -186,6 +212,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -245,19 +272,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -305,10 +335,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -360,6 +392,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -1250,6 +1283,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1266,6 +1300,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1275,6 +1310,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1291,6 +1327,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1321,6 +1358,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1444,8 +1482,8 @@ typedef struct {
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
         rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
-        rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
-        rrr_Z_a_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+        rrr_U_x, rrr_U_y, rrr_Z_a_t, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2,
+        rrr_M_aa_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
 } values_rrr;
 
 INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1582,44 +1620,6 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
-{
-    /* (rrr-w_2) reciprocal vector 2 */
-    const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
-    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
-    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
-    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
-    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
-        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
-    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
-        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
-    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
-    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
-    /* (M_ta) coupling block of M */
-    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
-    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
-}
-
 INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-u_1) centripetal acceleration of the connection point */
@@ -1671,6 +1671,44 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     v->rrr_Z_a_t = v->rrr_U_y*v->rrr_q_x - v->rrr_U_x*v->rrr_q_y;
 }
 
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
+        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
+        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
+        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+    const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
+        v->axis_x_rrr_axes2_x*rrr_Q_t_2;
+    const real rrr_Q_t_4 = v->axis_y_rrr_axes2_x*rrr_Q_t_2 -
+        v->axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+    v->rrr_Q_xx = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_x_rrr_axes2_x*rrr_Q_t_3;
+    v->rrr_Q_yy = -m->rrr_d_c_in_axes2_yy[i] - 2*v->axis_y_rrr_axes2_x*rrr_Q_t_4;
+    v->rrr_Q_xy = v->axis_x_rrr_axes2_x*rrr_Q_t_4 + v->axis_y_rrr_axes2_x*rrr_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rrr_M_ta_t = v->rrr_Q_xy*v->rrr_q_x - v->rrr_Q_xx*v->rrr_q_y;
+    v->rrr_M_ta_t_2 = v->rrr_Q_yy*v->rrr_q_x - v->rrr_Q_xy*v->rrr_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_M_aa_t = v->rrr_M_ta_t_2*v->rrr_q_x - v->rrr_M_ta_t*v->rrr_q_y;
+}
+
 INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-alpha_2) angular acceleration of link 2 */
@@ -1709,9 +1747,9 @@ typedef struct {
         rrr_leg1_H_a_2_z, rrr_leg1_a_p_x, rrr_leg1_a_p_y, rrr_leg1_qd_1, rrr_leg1_qd_2,
         rrr_leg1_u_1_x, rrr_leg1_u_1_t, rrr_leg1_bias_in_axes2_y, rrr_leg1_bias_in_axes2_x,
         rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y,
-        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_Q_xx, rrr_leg1_Q_yy, rrr_leg1_Q_xy,
-        rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t, rrr_leg1_U_x, rrr_leg1_U_y,
-        rrr_leg1_Z_a_t, rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
+        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_U_x, rrr_leg1_U_y, rrr_leg1_Z_a_t, rrr_leg1_Q_xx,
+        rrr_leg1_Q_yy, rrr_leg1_Q_xy, rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t,
+        rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
         rrr_leg1_c_in_axes2_y;
 } values_rrr_leg1;
 
@@ -1880,49 +1918,6 @@ INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v
         v->rrr_leg1_qdd_1_t*v->rrr_leg1_r_1_in_axes2_x);
 }
 
-INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
-{
-    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-       links' inertia and weight */
-    const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
-    const real rrr_leg1_d_Gamma_2_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_J_2_in_spec2_zz[i] - rrr_leg1_d_Gamma_2_t_2) -
-        m->rrr_leg1_h_2_in_spec2_y[i];
-    /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-       links' inertia and weight */
-    const real rrr_leg1_d_Gamma_1_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_Jc_1_in_axes1_zz[i] - rrr_leg1_d_Gamma_2_t_2)
-        - m->rrr_leg1_h_2_in_spec2_y[i];
-    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-       and without the mass at the connection point */
-    const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
-        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
-        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
-    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_1_in_axes2_x +
-        v->rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
-        rrr_leg1_d_Gamma_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x -
-        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
-    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-    const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
-        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
-    const real rrr_leg1_Q_t_4 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
-        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
-    v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
-        2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
-    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-    /* (M_ta) coupling block of M */
-    v->rrr_leg1_M_ta_t = v->rrr_leg1_Q_xy*v->rrr_leg1_q_x - v->rrr_leg1_Q_xx*v->rrr_leg1_q_y;
-    v->rrr_leg1_M_ta_t_2 = v->rrr_leg1_Q_yy*v->rrr_leg1_q_x -
-        v->rrr_leg1_Q_xy*v->rrr_leg1_q_y;
-    /* (M_aa) rotational block of M */
-    v->rrr_leg1_M_aa_t = v->rrr_leg1_M_ta_t_2*v->rrr_leg1_q_x -
-        v->rrr_leg1_M_ta_t*v->rrr_leg1_q_y;
-}
-
 INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
 {
     /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
@@ -1981,6 +1976,49 @@ INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_le
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
     /* (Z_a) rotational part of Z */
     v->rrr_leg1_Z_a_t = v->rrr_leg1_U_y*v->rrr_leg1_q_x - v->rrr_leg1_U_x*v->rrr_leg1_q_y;
+}
+
+INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
+    const real rrr_leg1_d_Gamma_2_in_axes2_x =
+        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_J_2_in_spec2_zz[i] - rrr_leg1_d_Gamma_2_t_2) -
+        m->rrr_leg1_h_2_in_spec2_y[i];
+    /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_d_Gamma_1_in_axes2_x =
+        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_Jc_1_in_axes1_zz[i] - rrr_leg1_d_Gamma_2_t_2)
+        - m->rrr_leg1_h_2_in_spec2_y[i];
+    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
+        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
+        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
+    /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_1_in_axes2_x +
+        v->rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
+        rrr_leg1_d_Gamma_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x -
+        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+    const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
+    const real rrr_leg1_Q_t_4 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+        v->axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+    v->rrr_leg1_Q_xx = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    v->rrr_leg1_Q_yy = -m->rrr_leg1_d_c_in_axes2_yy[i] -
+        2*v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+    v->rrr_leg1_Q_xy = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+    /* (M_ta) coupling block of M */
+    v->rrr_leg1_M_ta_t = v->rrr_leg1_Q_xy*v->rrr_leg1_q_x - v->rrr_leg1_Q_xx*v->rrr_leg1_q_y;
+    v->rrr_leg1_M_ta_t_2 = v->rrr_leg1_Q_yy*v->rrr_leg1_q_x -
+        v->rrr_leg1_Q_xy*v->rrr_leg1_q_y;
+    /* (M_aa) rotational block of M */
+    v->rrr_leg1_M_aa_t = v->rrr_leg1_M_ta_t_2*v->rrr_leg1_q_x -
+        v->rrr_leg1_M_ta_t*v->rrr_leg1_q_y;
 }
 
 INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr_leg1 *v)
@@ -2050,6 +2088,75 @@ INLINE void any_place_rrr(size_t w, size_t k, size_t at, size_t count, const rea
     t->total[k] += o[5*count + at];
 }
 
+INLINE void any_sums_rrr_leg1(size_t k, size_t count, int add, const values_rrr_leg1 *v, real
+    *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_leg1_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrr_leg1_2(size_t k, size_t count, int add, const values_rrr_leg1 *v, real
+    *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_leg1_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_leg1_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrr_leg1(size_t k, size_t count, const values_rrr_leg1 *v, real *o)
+{
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_leg1_w_1_x;
+    o[1*count + k] = v->rrr_leg1_w_1_y;
+    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rrr_leg1_H_a_1_z;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    o[3*count + k] = v->rrr_leg1_w_2_x;
+    o[4*count + k] = v->rrr_leg1_w_2_y;
+    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+    o[5*count + k] = v->rrr_leg1_H_a_2_z;
+}
+
+INLINE void any_sums_rrr(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->rrr_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->rrr_Q_yy);  /* M_tt_yy_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[3*count + k], add, v->rrr_M_ta_t);  /* M_ta_xz_of_legs */
+    gather(&terms[4*count + k], add, v->rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[5*count + k], add, v->rrr_M_aa_t);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->rrr_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->rrr_U_y);  /* Z_t_y_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[2*count + k], add, v->rrr_Z_a_t);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
+{
+    /* (rrr-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->rrr_w_1_x;
+    o[1*count + k] = v->rrr_w_1_y;
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    o[2*count + k] = v->rrr_H_a_1_z;
+}
+
 INLINE void any_place_rrr_leg1_2(size_t k, size_t at, size_t count, const real *o, status_flags
     *t)
 {
@@ -2088,38 +2195,17 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
-    stage_rrr_leg1_M_dynamics(m, i, &v);
     stage_rrr_leg1_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[8*count + k], add, v.rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_leg1_H_a_1_z;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[3*count + k] = v.rrr_leg1_w_2_x;
-    o[4*count + k] = v.rrr_leg1_w_2_y;
-    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.rrr_leg1_H_a_2_z;
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
-        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
+    stage_rrr_leg1_M_dynamics(m, i, &v);
+    any_sums_rrr_leg1(k, count, add, &v, terms);
+    any_sums_rrr_leg1_2(k, count, add, &v, terms + 6*count);
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -2128,59 +2214,43 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
-    stage_rrr_M_dynamics(m, i, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[6*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[8*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    stage_rrr_M_dynamics(m, i, &v);
+    any_sums_rrr(k, count, add, &v, terms);
+    any_sums_rrr_2(k, count, add, &v, terms + 6*count);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[4*w + k];
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[5*w + k];
     const real Z_t_y_of_legs = sums[7*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[8*w + k];
     const real Z_q_z = s[6*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2215,9 +2285,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
@@ -2242,9 +2314,10 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[7*LANES], sums[9*LANES];
-    real o_rrr_leg1[9*LANES];
-    real o_rrr[6*LANES];
+    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real o_rrr_leg1[9*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
@@ -2252,21 +2325,26 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2279,19 +2357,11 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[3*count + k], add, v.rrr_leg1_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_leg1_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[5*count + k], add, v.rrr_leg1_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rrr_leg1(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2300,36 +2370,28 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_M_dynamics(m, i, &v);
-    /* (M_tt) */
-    gather(&terms[0*count + k], add, v.rrr_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.rrr_Q_yy);  /* M_tt_yy_of_legs */
-    /* (M_ta) */
-    gather(&terms[3*count + k], add, v.rrr_M_ta_t);  /* M_ta_xz_of_legs */
-    gather(&terms[4*count + k], add, v.rrr_M_ta_t_2);  /* M_ta_yz_of_legs */
-    /* (M_aa) */
-    gather(&terms[5*count + k], add, v.rrr_M_aa_t);  /* M_aa_zz_of_legs */
+    any_sums_rrr(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[2*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xz_of_legs = sums[3*w + k];
     const real h_star_y = s[3*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yz_of_legs = sums[4*w + k];
     const real h_star_x = s[2*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real M_aa_zz_of_legs = sums[5*w + k];
     const real M_aa_zz = m->J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
@@ -2356,9 +2418,11 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
@@ -2382,30 +2446,36 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[4*LANES], sums[6*LANES];
-    real o_rrr_leg1[2*LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real o_rrr_leg1[2*LANES];
+    ALIGNED real o_rrr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2433,15 +2503,11 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     stage_rrr_leg1_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.rrr_leg1_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_leg1_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[2*count + k], add, v.rrr_leg1_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rrr_leg1_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2451,26 +2517,22 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     stage_rrr_Z_dynamics(m, i, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.rrr_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.rrr_U_y);  /* Z_t_y_of_legs */
-    /* (Z_a) */
-    gather(&terms[2*count + k], add, v.rrr_Z_a_t);  /* Z_a_z_of_legs */
+    any_sums_rrr_2(k, count, add, &v, terms);
+    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[2*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
     const real Z_p_y = s[3*w + k];
     const real Z_t_y_of_legs = sums[1*w + k];
     const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_z_of_legs = sums[2*w + k];
     const real Z_q_z = s[4*w + k];
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
@@ -2490,9 +2552,11 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, V, terms_rrr, o_rrr);
     }
@@ -2517,9 +2581,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
-    real o_rrr_leg1[2*LANES];
-    real o_rrr[2*LANES];
+    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real o_rrr_leg1[2*LANES];
+    ALIGNED real o_rrr[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
@@ -2527,21 +2592,26 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr_leg1, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1_2(k, k, LANES, o_rrr, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2553,22 +2623,13 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
 {
     values_rrr_leg1 v;
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_leg1_H_a_1_z;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[3*count + k] = v.rrr_leg1_w_2_x;
-    o[4*count + k] = v.rrr_leg1_w_2_y;
-    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.rrr_leg1_H_a_2_z;
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
-        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+        (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -2576,15 +2637,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_rrr v;
     stage_rrr_X(m, w, i, j, s, X, &v);
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2594,9 +2651,11 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         H_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         H_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
@@ -2611,25 +2670,30 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[2*LANES];
-    real o_rrr_leg1[9*LANES];
-    real o_rrr[6*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rrr_leg1[9*LANES];
+    ALIGNED real o_rrr[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
@@ -2674,27 +2738,18 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
         v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
     const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
         v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real rrr_leg1_R_a_t = rrr_leg1_c_x*v.rrr_leg1_q_y - rrr_leg1_c_y*v.rrr_leg1_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, rrr_leg1_R_a_t);  /* R_a_z_of_legs */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_leg1_H_a_1_z;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[3*count + k] = v.rrr_leg1_w_2_x;
-    o[4*count + k] = v.rrr_leg1_w_2_y;
-    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.rrr_leg1_H_a_2_z;
+    any_entries_rrr_leg1(k, count, &v, o);
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -2733,14 +2788,10 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
     /* (R_a) */
     gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
+    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -2755,14 +2806,14 @@ INLINE void required_place_rrr(size_t w, size_t k, size_t at, size_t count, cons
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[2*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
     const real R_t_y_of_legs = sums[1*w + k];
     const real f_p_y = s[3*w + k];
     const real R_t_y = f_p_y - R_t_y_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_z_of_legs = sums[2*w + k];
     const real mu_p_z = s[4*w + k];
     const real R_a_z = mu_p_z + R_a_z_of_legs;
@@ -2783,12 +2834,14 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             required_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, V, A,
                 terms_rrr_leg1, o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             required_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, V, A, terms_rrr,
                 o_rrr);
@@ -2815,9 +2868,10 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[5*LANES], sums[3*LANES];
-    real o_rrr_leg1[8*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real o_rrr_leg1[8*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
@@ -2825,21 +2879,26 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrr_leg1(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_rrr(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_rrr(LANES, k, k, LANES, o_rrr, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -2859,10 +2918,10 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
     o[0*count + k] = rrr_leg1_q_1;
     /* (rrr_leg1-q_2) */
     o[1*count + k] = rrr_leg1_q_2;
-    o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
@@ -2888,9 +2947,9 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = rrr_q_1;
     /* (rrr-q_2) */
     o[1*count + k] = rrr_q_2;
-    o[4*count + k] = rrr_q_1 + rrr_q_2;
-    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
+    o[4*count + k] = rrr_q_1 + rrr_q_2;
 }
 
 INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -2910,9 +2969,11 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         inverse_kinematics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         inverse_kinematics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, o_rrr);
     }
@@ -2927,25 +2988,30 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_rrr(m, LANES, i, k, k, LANES, s, X, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_rrr(LANES, k, k, LANES, o_rrr, q, t);
         }
@@ -2963,11 +3029,11 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
     o[0*count + k] = v.rrr_leg1_qd_1;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_leg1_qd_2;
-    o[4*count + k] = v.rrr_leg1_qd_1 + v.rrr_leg1_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = v.rrr_leg1_qd_1 + v.rrr_leg1_qd_2;
 }
 
 INLINE void joint_rates_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -2990,10 +3056,10 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = v.rrr_qd_1;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3014,9 +3080,11 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_rates_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_rates_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, o_rrr);
     }
@@ -3031,25 +3099,30 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, V, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_rrr(LANES, k, k, LANES, o_rrr, qd, t);
         }
@@ -3069,11 +3142,11 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
     o[0*count + k] = -v.rrr_leg1_qdd_1_t;
     /* (rrr_leg1-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_leg1_qdd_2;
-    o[4*count + k] = v.rrr_leg1_qdd_1_t + v.rrr_leg1_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[4*count + k] = v.rrr_leg1_qdd_1_t + v.rrr_leg1_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const
@@ -3098,10 +3171,10 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = -v.rrr_qdd_1_t;
     /* (rrr-qdd_2) acceleration of joint 2 */
     o[1*count + k] = v.rrr_qdd_2;
-    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
+    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[4*count + k] = v.rrr_qdd_1_t + v.rrr_qdd_2;
 }
 
 INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t count, const real
@@ -3122,9 +3195,11 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         joint_accelerations_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         joint_accelerations_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
     }
@@ -3139,25 +3214,30 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[2*LANES];
-    real o_rrr_leg1[5*LANES];
-    real o_rrr[5*LANES];
+    ALIGNED real s[2*LANES];
+    ALIGNED real o_rrr_leg1[5*LANES];
+    ALIGNED real o_rrr[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s);
     }
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr_leg1(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr_leg1);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr_leg1(LANES, k, k, LANES, o_rrr_leg1, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_rrr(m, LANES, i, k, k, LANES, s, X, V, A, o_rrr);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_rrr(LANES, k, k, LANES, o_rrr, qdd, t);
         }
@@ -3192,10 +3272,10 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     o[4*count + k] = v.rrr_leg1_w_2_x;
     o[5*count + k] = v.rrr_leg1_w_2_y;
+    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3235,9 +3315,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     /* (rrr-w_1) reciprocal vector 1 */
     o[2*count + k] = v.rrr_w_1_x;
     o[3*count + k] = v.rrr_w_1_y;
+    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
 }
 
 INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3262,12 +3342,14 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             legs_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), s, X, V, A,
                 o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             legs_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), s, X, V, A, o_rrr);
         }
@@ -3310,9 +3392,9 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
-    o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3330,8 +3412,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
     gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
-    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3353,12 +3435,14 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
             potential_legs_rrr_leg1(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr_leg1), 0, s, X,
                 terms_rrr_leg1, o_rrr_leg1);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
+        IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
             potential_legs_rrr(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr,
                 o_rrr);
@@ -3406,33 +3490,24 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     const real rrr_leg1_least_pivots =
         lesser(root(m->inv_rrr_leg1_rho2_1_t[i]*rrr_leg1_pivot_size),
         m->inv_rrr_leg1_size[i]*rrr_leg1_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real rrr_leg1_spread_t = m->b_c_in_platform_x - m->rrr_leg1_platform_point_x[i];
     const real rrr_leg1_spread_t_2 = m->b_c_in_platform_y - m->rrr_leg1_platform_point_y[i];
     const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
         rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
     /* (spread) */
     gather(&terms[0*count + k], add, rrr_leg1_spread_t_3);  /* spread_rrr_leg1 */
-    /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_leg1_w_1_x;
-    o[1*count + k] = v.rrr_leg1_w_1_y;
-    /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_leg1_H_a_1_z;
-    /* (rrr_leg1-w_2) reciprocal vector 2 */
-    o[3*count + k] = v.rrr_leg1_w_2_x;
-    o[4*count + k] = v.rrr_leg1_w_2_y;
-    /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-    o[5*count + k] = v.rrr_leg1_H_a_2_z;
+    any_entries_rrr_leg1(k, count, &v, o);
     /* (rrr_leg1-G) */
     o[6*count + k] = rrr_leg1_least_pivots;
     o[7*count + k] = v.rrr_leg1_disc_1;
-    o[10*count + k] = ((v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
-        v.rrr_leg1_w_2_x)) + ((v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots
-        + v.rrr_leg1_disc_1));
+    o[8*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[9*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[8*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
+    o[10*count + k] = ((v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
+        v.rrr_leg1_w_2_x)) + ((v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots
+        + v.rrr_leg1_disc_1));
 }
 
 INLINE void condition_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -3468,19 +3543,15 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
     /* (spread) */
     gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
-    /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.rrr_w_1_x;
-    o[1*count + k] = v.rrr_w_1_y;
-    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    o[2*count + k] = v.rrr_H_a_1_z;
+    any_entries_rrr(k, count, &v, o);
     /* (rrr-G) */
     o[3*count + k] = rrr_least_pivots;
     o[4*count + k] = v.rrr_disc_1;
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
-        v.rrr_disc_1));
+    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
+    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+        v.rrr_disc_1));
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3498,7 +3569,7 @@ INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_rrr = sums[1*w + k];
     const real spread_rrr_leg1 = sums[0*w + k];
     const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
@@ -3516,9 +3587,11 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         condition_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, s, X, terms_rrr_leg1, o_rrr_leg1);
     }
+    IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         condition_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, s, X, terms_rrr, o_rrr);
     }
@@ -3555,8 +3628,8 @@ int sixbar_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3578,8 +3651,8 @@ int sixbar_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3602,8 +3675,8 @@ int sixbar_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3625,8 +3698,8 @@ int sixbar_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3649,8 +3722,8 @@ int sixbar_joint_rates(const prepared *m, const real *X, const real *V, real *qd
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3675,8 +3748,8 @@ int sixbar_joint_accelerations(const prepared *m, const real *X, const real *V, 
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3706,8 +3779,8 @@ int sixbar_dynamics(const prepared *m, const real *X, const real *V, real *M_out
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3721,6 +3794,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3797,15 +3871,16 @@ int sixbar_inverse_dynamics(const prepared *m, const real *X, const real *V, con
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -3850,10 +3925,10 @@ int sixbar_forward_dynamics(const prepared *m, const real *X, const real *V, con
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3861,9 +3936,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

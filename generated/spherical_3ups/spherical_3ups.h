@@ -104,16 +104,16 @@ typedef struct {
     spherical_3ups_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
             ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
             ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
-            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
-            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
-            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
-            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
-            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
-            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
-            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
-            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
-            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_Sigma_2_in_axes2_zz[4], ups_base_frame_xx[4], ups_base_frame_xy[4],
+            ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4], ups_base_frame_yz[4],
+            ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4], ups_base_point_x[4],
+            ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4], ups_branch_2[4],
+            ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4], ups_h_2_in_spec2_z[4],
+            ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4], ups_h_3_in_spec2_z[4],
+            ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4], ups_h_group_2_in_axes2_z[4],
+            ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4], ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4],
+            ups_potential_t_4[4], ups_potential_t_5[4], ups_potential_t_6[4];
     spherical_3ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, J_star_t_15, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,
@@ -136,41 +136,41 @@ extern const char *const spherical_3ups_ACTUATOR_NAMES[SPHERICAL_3UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_model *model);
 
-/* Inertia matrix M. 399 mul, 270 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 387 mul, 261 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int spherical_3ups_M(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *M);
 size_t spherical_3ups_M_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 537 mul, 381 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 528 mul, 378 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int spherical_3ups_Z(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *Z);
 size_t spherical_3ups_Z_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 93 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 96 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int spherical_3ups_H(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *H);
 size_t spherical_3ups_H_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 81 mul, 60 add, 6
-   div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
+/* Displacements q of all joints. They are those of the assembly branch of home. 102 mul, 72 add,
+   6 div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int spherical_3ups_inverse_kinematics(const spherical_3ups_model *model, const spherical_3ups_real
     *X, spherical_3ups_real *q);
 size_t spherical_3ups_inverse_kinematics_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *q, int *status);
 
-/* Rates of all joints. 171 mul, 105 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 159 mul, 96 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int spherical_3ups_joint_rates(const spherical_3ups_model *model, const spherical_3ups_real *X,
     const spherical_3ups_real *V, spherical_3ups_real *rates);
 size_t spherical_3ups_joint_rates_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *rates, int *status);
 
-/* Accelerations of all joints. 279 mul, 168 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 267 mul, 159 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int spherical_3ups_joint_accelerations(const spherical_3ups_model *model, const
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
@@ -179,7 +179,7 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
     spherical_3ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 795 mul, 558 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 786 mul, 555 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int spherical_3ups_dynamics(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *M, spherical_3ups_real *Z, spherical_3ups_real
@@ -188,7 +188,7 @@ size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *M,
     spherical_3ups_real *Z, spherical_3ups_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 561 mul, 408 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 552 mul, 405 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int spherical_3ups_inverse_dynamics(const spherical_3ups_model *model, const spherical_3ups_real
@@ -198,7 +198,7 @@ size_t spherical_3ups_inverse_dynamics_batch(const spherical_3ups_model *model, 
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
     spherical_3ups_real *wrench, spherical_3ups_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 795 mul, 558 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 786 mul, 555 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int spherical_3ups_forward_dynamics(const spherical_3ups_model *model, const spherical_3ups_real
@@ -219,7 +219,7 @@ size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *mo
     const spherical_3ups_real *wrench, spherical_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 468 mul, 348 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 459 mul, 345 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int spherical_3ups_leg_reactions(const spherical_3ups_model *model, const spherical_3ups_real *X,
     const spherical_3ups_real *V, const spherical_3ups_real *A, const spherical_3ups_real *wrench,
@@ -239,7 +239,7 @@ size_t spherical_3ups_energy_batch(const spherical_3ups_model *model, size_t n, 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 121 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (3). */
 int spherical_3ups_condition(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *sigma, spherical_3ups_real *legs);
@@ -247,7 +247,7 @@ size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t 
     spherical_3ups_real *X, spherical_3ups_real *sigma, spherical_3ups_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular
+   the least over the largest of them. 121 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int spherical_3ups_manipulability(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *measure, spherical_3ups_real *isotropy);
@@ -255,7 +255,7 @@ size_t spherical_3ups_manipulability_batch(const spherical_3ups_model *model, si
     spherical_3ups_real *X, spherical_3ups_real *measure, spherical_3ups_real *isotropy, int
     *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 118
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 121
    mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int spherical_3ups_singularity_distance(const spherical_3ups_model *model, const
@@ -281,7 +281,7 @@ size_t spherical_3ups_dissipation_batch(const spherical_3ups_model *model, size_
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *dissipation, int
     *status);
 
-/* Generalised momentum M V. 399 mul, 270 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 387 mul, 261 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int spherical_3ups_momentum(const spherical_3ups_model *model, const spherical_3ups_real *X, const
     spherical_3ups_real *V, spherical_3ups_real *momentum);
@@ -290,34 +290,34 @@ size_t spherical_3ups_momentum_batch(const spherical_3ups_model *model, size_t n
     *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 81 mul, 60 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+   where there is none. 102 mul, 72 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
 int spherical_3ups_joint_margins(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *margins);
 size_t spherical_3ups_joint_margins_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 81 mul, 60 add, 6 div, 6 sqrt, 6
+/* Whether all joints are within their limits of displacement. 102 mul, 72 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: within (1). */
 int spherical_3ups_within_limits(const spherical_3ups_model *model, const spherical_3ups_real *X,
     spherical_3ups_real *within);
 size_t spherical_3ups_within_limits_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 81 mul, 60 add, 6 div, 6 sqrt, 6
+/* Displacements of the actuated joints, in the order of tau. 102 mul, 72 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */
 int spherical_3ups_actuator_positions(const spherical_3ups_model *model, const spherical_3ups_real
     *X, spherical_3ups_real *q);
 size_t spherical_3ups_actuator_positions_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 171 mul, 105 add, 6 div, 6 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 159 mul, 96 add, 6 div, 6 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int spherical_3ups_actuator_rates(const spherical_3ups_model *model, const spherical_3ups_real *X,
     const spherical_3ups_real *V, spherical_3ups_real *rates);
 size_t spherical_3ups_actuator_rates_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, const spherical_3ups_real *V, spherical_3ups_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 279 mul, 168 add, 6 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 267 mul, 159 add, 6 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int spherical_3ups_actuator_accelerations(const spherical_3ups_model *model, const
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,

@@ -533,16 +533,6 @@ def _prepare(p):
     ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
     ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
     ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_acc_3_t = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_acc_3_t_2 = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_acc_3_t_3 = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
     # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
     ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
@@ -608,14 +598,23 @@ def _prepare(p):
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
     # (potential) potential energy
     ups_potential_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
+    )
+    ups_potential_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_potential_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    ups_potential_t_4 = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_potential_t_2 = (
+    ups_potential_t_5 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_potential_t_3 = (
+    ups_potential_t_6 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
@@ -669,9 +668,7 @@ def _prepare(p):
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
                     ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
-                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_Sigma_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
                     ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
@@ -688,12 +685,11 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
-                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -706,11 +702,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -720,11 +714,9 @@ def _prepare(p):
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -737,11 +729,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -763,11 +753,9 @@ def _prepare(p):
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -775,25 +763,21 @@ def _prepare(p):
         (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
-        (fixed_centre_x, fixed_centre_y, fixed_centre_z,),
+        (fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
@@ -806,14 +790,15 @@ def _prepare(p):
                 potential_t_2, potential_t_3,),
             (
                 (_ups,
-        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+                    ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+                    ups_potential_t_6,),
                 ),
             ),
         ),
@@ -822,11 +807,9 @@ def _prepare(p):
                 fixed_centre_z, legs_size, spread_t,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1813,7 +1796,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 795 mul, 558 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 786 mul, 555 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1901,9 +1884,7 @@ def _run_dynamics(m, X, V):
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -1922,26 +1903,23 @@ def _run_dynamics(m, X, V):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -1959,9 +1937,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2027,10 +2005,15 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -2180,9 +2163,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t_6
@@ -2227,7 +2210,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 399 mul, 270 add, 6 div, 6 sqrt, 0 trig
+# M: 387 mul, 261 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2286,11 +2269,10 @@ def _run_M(m, X):
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2305,26 +2287,23 @@ def _run_M(m, X):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2335,9 +2314,9 @@ def _run_M(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
         axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
@@ -2422,9 +2401,9 @@ def _run_M(m, X):
         ups_M_aa_t_10 = ups_M_aa_t*ups_q_z + ups_M_aa_t_5*ups_q_x
         ups_M_aa_t_11 = ups_M_aa_t_3*ups_q_x - ups_M_aa_t*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_aa) rotational block of M
         M_aa_ups_xx += ups_M_aa_t_6
@@ -2453,7 +2432,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 537 mul, 381 add, 6 div, 6 sqrt, 0 trig
+# Z: 528 mul, 378 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2535,9 +2514,7 @@ def _run_Z(m, X, V):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2556,26 +2533,23 @@ def _run_Z(m, X, V):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2593,9 +2567,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2659,10 +2633,15 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
@@ -2737,9 +2716,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_a) rotational part of Z
         Z_a_ups_x += ups_Z_a_t
@@ -2756,7 +2735,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 93 mul, 69 add, 3 div, 3 sqrt, 0 trig
+# H: 96 mul, 69 add, 3 div, 3 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2794,10 +2773,9 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2812,20 +2790,20 @@ def _run_H(m, X):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -2837,8 +2815,9 @@ def _run_H(m, X):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) >
+            _TOLERANCE * 0.8)
         )
         # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[0][leg]] = ups_H_a_3_x
@@ -2847,7 +2826,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 561 mul, 408 add, 6 div, 6 sqrt, 0 trig
+# required: 552 mul, 405 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2968,9 +2947,7 @@ def _run_required(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2989,26 +2966,23 @@ def _run_required(m, X, V, A):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3026,9 +3000,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3095,10 +3069,15 @@ def _run_required(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
@@ -3172,9 +3151,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_a) moment that actuators and external wrench must give
         R_a_ups_x += ups_R_a_t
@@ -3195,7 +3174,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 81 mul, 60 add, 6 div, 6 sqrt, 6 trig
+# inverse_kinematics: 102 mul, 72 add, 6 div, 6 sqrt, 6 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -3262,18 +3241,20 @@ def _run_inverse_kinematics(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3281,8 +3262,8 @@ def _run_inverse_kinematics(m, X):
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -3293,7 +3274,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 171 mul, 105 add, 6 div, 6 sqrt, 0 trig
+# joint_rates: 159 mul, 96 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3338,10 +3319,9 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3356,26 +3336,23 @@ def _run_joint_rates(m, X, V):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3390,9 +3367,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3412,9 +3389,9 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -3425,7 +3402,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 279 mul, 168 add, 6 div, 6 sqrt, 0 trig
+# joint_accelerations: 267 mul, 159 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3494,10 +3471,9 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3512,26 +3488,23 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3549,9 +3522,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3607,9 +3580,9 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
         ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -3620,11 +3593,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 468 mul, 348 add, 6 div, 6 sqrt, 0 trig
+# legs: 459 mul, 345 add, 6 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
-    fixed_centre_x, fixed_centre_y, fixed_centre_z = shared
+    fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3692,9 +3665,7 @@ def _run_legs(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
@@ -3713,26 +3684,23 @@ def _run_legs(m, X, V, A):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3750,9 +3718,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3819,10 +3787,15 @@ def _run_legs(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
         ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
@@ -3895,9 +3868,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -3960,13 +3933,14 @@ def _run_potential(m, X):
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+            ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+            ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+            ups_potential_t_6,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3991,42 +3965,41 @@ def _run_potential(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_2 = ups_branch_1*sqrt(ups_root_1_t_5)
         # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        inv_ups_root_1_2 = 1.0/ups_root_1_2
+        ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x
         # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_3 = ups_q_3_t + ups_root_1_t_5
+        ups_q_3_2 = ups_branch_2*sqrt(ups_q_3_t_3)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-q_2) displacement of joint 2
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        inv_ups_q_3_2 = 1.0/ups_q_3_2
+        ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2_t = inv_ups_q_3_2*ups_S_in_turn1_z
         # (potential) potential energy
-        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_5 = (
-        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
-            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
-            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
+        ups_potential_t_7 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_8 = ups_c_1*ups_potential_t_4 + ups_potential_t_5*ups_s_1
+        ups_potential_t_9 = (
+        (ups_potential_t_7*ups_s_2_t - ups_c_2_2*ups_potential_t_3)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_potential_t_8*ups_s_2_t -
+            ups_c_2_2*ups_potential_t_6)) - (ups_c_1*ups_potential_t_2 -
+            ups_potential_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_5 - ups_potential_t_4*ups_s_1)) -
+            (ups_c_2_2*ups_potential_t_7 + ups_potential_t_3*ups_s_2_t)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2_2*ups_potential_t_8 +
+            ups_potential_t_6*ups_s_2_t))
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_5
+        potential_ups += ups_potential_t_9
     # (potential) potential energy
     potential = potential_ups - potential_t_4
     # (potential) potential energy
@@ -4034,7 +4007,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 118 mul, 96 add, 3 div, 13 sqrt, 0 trig
+# condition: 121 mul, 96 add, 3 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4084,10 +4057,9 @@ def _run_condition(m, X):
     spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4102,21 +4074,21 @@ def _run_condition(m, X):
         ups_S_x = fixed_centre_x + ups_q_x - ups_base_point_x
         ups_S_y = fixed_centre_y + ups_q_y - ups_base_point_y
         ups_S_z = fixed_centre_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -4124,8 +4096,8 @@ def _run_condition(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_root_1_t)
-        ups_pivot_size_2 = abs(ups_q_3_t)
+        ups_pivot_size = abs(ups_root_1_t_4)
+        ups_pivot_size_2 = abs(ups_q_3_t_2)
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
@@ -4144,8 +4116,8 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+        clear & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid

@@ -102,16 +102,16 @@ typedef struct {
     stewart_real ups_J_group_2_in_axes2_xx[8], ups_J_group_2_in_axes2_xy[8],
             ups_J_group_2_in_axes2_xz[8], ups_J_group_2_in_axes2_yy[8], ups_J_group_2_in_axes2_yz[8],
             ups_J_group_2_in_axes2_zz[8], ups_Sigma_2_in_axes2_xx[8], ups_Sigma_2_in_axes2_yy[8],
-            ups_Sigma_2_in_axes2_zz[8], ups_acc_3_t[8], ups_acc_3_t_2[8], ups_acc_3_t_3[8],
-            ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
-            ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
-            ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
-            ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
-            ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
-            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
-            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
-            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_Sigma_2_in_axes2_zz[8], ups_base_frame_xx[8], ups_base_frame_xy[8],
+            ups_base_frame_xz[8], ups_base_frame_yx[8], ups_base_frame_yy[8], ups_base_frame_yz[8],
+            ups_base_frame_zx[8], ups_base_frame_zy[8], ups_base_frame_zz[8], ups_base_point_x[8],
+            ups_base_point_y[8], ups_base_point_z[8], ups_branch_1[8], ups_branch_2[8],
+            ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8], ups_h_2_in_spec2_z[8],
+            ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8], ups_h_3_in_spec2_z[8],
+            ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8], ups_h_group_2_in_axes2_z[8],
+            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8], ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8],
+            ups_potential_t_4[8], ups_potential_t_5[8], ups_potential_t_6[8];
     stewart_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -133,52 +133,52 @@ extern const char *const stewart_ACTUATOR_NAMES[STEWART_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_prepare(const stewart_params *params, stewart_model *model);
 
-/* Inertia matrix M. 774 mul, 610 add, 12 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 750 mul, 592 add, 12 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_M(const stewart_model *model, const stewart_real *X, stewart_real *M);
 size_t stewart_M_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 1005 mul, 750 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 987 mul, 744 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_Z(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *Z);
 size_t stewart_Z_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 186 mul, 138 add, 6 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 192 mul, 138 add, 6 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int stewart_H(const stewart_model *model, const stewart_real *X, stewart_real *H);
 size_t stewart_H_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
     *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 162 mul, 120 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 204 mul, 144 add,
    12 div, 12 sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
 int stewart_inverse_kinematics(const stewart_model *model, const stewart_real *X, stewart_real *q);
 size_t stewart_inverse_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
     *X, stewart_real *q, int *status);
 
-/* Rates of all joints. 342 mul, 228 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 318 mul, 210 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int stewart_joint_rates(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *rates);
 size_t stewart_joint_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *rates, int *status);
 
-/* Accelerations of all joints. 552 mul, 363 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 528 mul, 345 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_joint_accelerations(const stewart_model *model, const stewart_real *X, const
     stewart_real *V, const stewart_real *A, stewart_real *accelerations);
 size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
     *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1521 mul, 1192 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1503 mul, 1186 add, 12 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *M, stewart_real *Z, stewart_real *H);
 size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
     stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1062 mul, 825 add, 12 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1044 mul, 819 add, 12 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_inverse_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -187,7 +187,7 @@ size_t stewart_inverse_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau,
     int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1521 mul, 1192 add, 12 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1503 mul, 1186 add, 12 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_forward_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
@@ -206,7 +206,7 @@ size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n,
     stewart_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 930 mul, 723 add, 12 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 912 mul, 717 add, 12 div, 12 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int stewart_leg_reactions(const stewart_model *model, const stewart_real *X, const stewart_real
     *V, const stewart_real *A, const stewart_real *wrench, stewart_real *forces);
@@ -224,7 +224,7 @@ size_t stewart_energy_batch(const stewart_model *model, size_t n, const stewart_
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 235 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 241 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int stewart_condition(const stewart_model *model, const stewart_real *X, stewart_real *sigma,
     stewart_real *legs);
@@ -232,14 +232,14 @@ size_t stewart_condition_batch(const stewart_model *model, size_t n, const stewa
     stewart_real *sigma, stewart_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 235 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular
+   the least over the largest of them. 241 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int stewart_manipulability(const stewart_model *model, const stewart_real *X, stewart_real
     *measure, stewart_real *isotropy);
 size_t stewart_manipulability_batch(const stewart_model *model, size_t n, const stewart_real *X,
     stewart_real *measure, stewart_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 235
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 241
    mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int stewart_singularity_distance(const stewart_model *model, const stewart_real *X, stewart_real
@@ -262,7 +262,7 @@ int stewart_dissipation(const stewart_model *model, const stewart_real *X, const
 size_t stewart_dissipation_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *dissipation, int *status);
 
-/* Generalised momentum M V. 774 mul, 610 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 750 mul, 592 add, 12 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_momentum(const stewart_model *model, const stewart_real *X, const stewart_real *V,
     stewart_real *momentum);
@@ -270,33 +270,33 @@ size_t stewart_momentum_batch(const stewart_model *model, size_t n, const stewar
     stewart_real *V, stewart_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 162 mul, 120 add, 12 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   where there is none. 204 mul, 144 add, 12 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
    */
 int stewart_joint_margins(const stewart_model *model, const stewart_real *X, stewart_real
     *margins);
 size_t stewart_joint_margins_batch(const stewart_model *model, size_t n, const stewart_real *X,
     stewart_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 162 mul, 120 add, 12 div, 12 sqrt,
+/* Whether all joints are within their limits of displacement. 204 mul, 144 add, 12 div, 12 sqrt,
    12 trig. In: X (NQ). Out: within (1). */
 int stewart_within_limits(const stewart_model *model, const stewart_real *X, stewart_real *within);
 size_t stewart_within_limits_batch(const stewart_model *model, size_t n, const stewart_real *X,
     stewart_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 162 mul, 120 add, 12 div, 12 sqrt,
+/* Displacements of the actuated joints, in the order of tau. 204 mul, 144 add, 12 div, 12 sqrt,
    12 trig. In: X (NQ). Out: q (NU). */
 int stewart_actuator_positions(const stewart_model *model, const stewart_real *X, stewart_real *q);
 size_t stewart_actuator_positions_batch(const stewart_model *model, size_t n, const stewart_real
     *X, stewart_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 342 mul, 228 add, 12 div, 12 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 318 mul, 210 add, 12 div, 12 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int stewart_actuator_rates(const stewart_model *model, const stewart_real *X, const stewart_real
     *V, stewart_real *rates);
 size_t stewart_actuator_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
     const stewart_real *V, stewart_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 552 mul, 363 add, 12 div, 12 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 528 mul, 345 add, 12 div, 12 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_actuator_accelerations(const stewart_model *model, const stewart_real *X, const
     stewart_real *V, const stewart_real *A, stewart_real *accelerations);

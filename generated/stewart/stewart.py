@@ -557,16 +557,6 @@ def _prepare(p):
     ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
     ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
     ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_acc_3_t = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_acc_3_t_2 = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_acc_3_t_3 = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
     # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
     ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
@@ -632,14 +622,23 @@ def _prepare(p):
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
     # (potential) potential energy
     ups_potential_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
+    )
+    ups_potential_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_potential_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    ups_potential_t_4 = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_potential_t_2 = (
+    ups_potential_t_5 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_potential_t_3 = (
+    ups_potential_t_6 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
@@ -693,9 +692,7 @@ def _prepare(p):
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
                     ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
-                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_Sigma_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
                     ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
@@ -712,12 +709,11 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
-                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -730,11 +726,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -744,11 +738,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -761,11 +753,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -787,11 +777,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -799,25 +787,21 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
@@ -829,14 +813,15 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+                    ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+                    ups_potential_t_6,),
                 ),
             ),
         ),
@@ -844,11 +829,9 @@ def _prepare(p):
         (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1835,7 +1818,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1521 mul, 1192 add, 12 div, 12 sqrt, 0 trig
+# dynamics: 1503 mul, 1186 add, 12 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1940,9 +1923,7 @@ def _run_dynamics(m, X, V):
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -1961,26 +1942,23 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2001,9 +1979,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2069,10 +2047,15 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -2224,9 +2207,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2344,7 +2327,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 774 mul, 610 add, 12 div, 12 sqrt, 0 trig
+# M: 750 mul, 592 add, 12 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2418,11 +2401,10 @@ def _run_M(m, X):
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2437,26 +2419,23 @@ def _run_M(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2467,9 +2446,9 @@ def _run_M(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
         axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
@@ -2556,9 +2535,9 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2644,7 +2623,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1005 mul, 750 add, 12 div, 12 sqrt, 0 trig
+# Z: 987 mul, 744 add, 12 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2741,9 +2720,7 @@ def _run_Z(m, X, V):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2762,26 +2739,23 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2802,9 +2776,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2868,10 +2842,15 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
@@ -2946,9 +2925,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -2977,7 +2956,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig
+# H: 192 mul, 138 add, 6 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3020,10 +2999,9 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3038,20 +3016,20 @@ def _run_H(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3063,8 +3041,9 @@ def _run_H(m, X):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) >
+            _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
@@ -3077,7 +3056,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1062 mul, 825 add, 12 div, 12 sqrt, 0 trig
+# required: 1044 mul, 819 add, 12 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3221,9 +3200,7 @@ def _run_required(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -3242,26 +3219,23 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3282,9 +3256,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3351,10 +3325,15 @@ def _run_required(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
@@ -3428,9 +3407,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -3467,7 +3446,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 162 mul, 120 add, 12 div, 12 sqrt, 12 trig
+# inverse_kinematics: 204 mul, 144 add, 12 div, 12 sqrt, 12 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -3539,18 +3518,20 @@ def _run_inverse_kinematics(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3558,8 +3539,8 @@ def _run_inverse_kinematics(m, X):
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -3570,7 +3551,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 342 mul, 228 add, 12 div, 12 sqrt, 0 trig
+# joint_rates: 318 mul, 210 add, 12 div, 12 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3626,10 +3607,9 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3644,26 +3624,23 @@ def _run_joint_rates(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3681,9 +3658,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3703,9 +3680,9 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -3716,7 +3693,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 552 mul, 363 add, 12 div, 12 sqrt, 0 trig
+# joint_accelerations: 528 mul, 345 add, 12 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3802,10 +3779,9 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3820,26 +3796,23 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3860,9 +3833,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3918,9 +3891,9 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
         ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -3931,10 +3904,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 930 mul, 723 add, 12 div, 12 sqrt, 0 trig
+# legs: 912 mul, 717 add, 12 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4020,9 +3994,7 @@ def _run_legs(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
@@ -4041,26 +4013,23 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -4081,9 +4050,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -4150,10 +4119,15 @@ def _run_legs(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
         ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
@@ -4226,9 +4200,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -4298,13 +4272,14 @@ def _run_potential(m, X):
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+            ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+            ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+            ups_potential_t_6,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4329,42 +4304,41 @@ def _run_potential(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_2 = ups_branch_1*sqrt(ups_root_1_t_5)
         # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        inv_ups_root_1_2 = 1.0/ups_root_1_2
+        ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x
         # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_3 = ups_q_3_t + ups_root_1_t_5
+        ups_q_3_2 = ups_branch_2*sqrt(ups_q_3_t_3)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-q_2) displacement of joint 2
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        inv_ups_q_3_2 = 1.0/ups_q_3_2
+        ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2_t = inv_ups_q_3_2*ups_S_in_turn1_z
         # (potential) potential energy
-        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_5 = (
-        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
-            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
-            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
+        ups_potential_t_7 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_8 = ups_c_1*ups_potential_t_4 + ups_potential_t_5*ups_s_1
+        ups_potential_t_9 = (
+        (ups_potential_t_7*ups_s_2_t - ups_c_2_2*ups_potential_t_3)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_potential_t_8*ups_s_2_t -
+            ups_c_2_2*ups_potential_t_6)) - (ups_c_1*ups_potential_t_2 -
+            ups_potential_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_5 - ups_potential_t_4*ups_s_1)) -
+            (ups_c_2_2*ups_potential_t_7 + ups_potential_t_3*ups_s_2_t)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2_2*ups_potential_t_8 +
+            ups_potential_t_6*ups_s_2_t))
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_5
+        potential_ups += ups_potential_t_9
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -4372,7 +4346,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 235 mul, 192 add, 6 div, 25 sqrt, 0 trig
+# condition: 241 mul, 192 add, 6 div, 25 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4425,10 +4399,9 @@ def _run_condition(m, X):
     spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4443,21 +4416,21 @@ def _run_condition(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -4465,8 +4438,8 @@ def _run_condition(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_root_1_t)
-        ups_pivot_size_2 = abs(ups_q_3_t)
+        ups_pivot_size = abs(ups_root_1_t_4)
+        ups_pivot_size_2 = abs(ups_q_3_t_2)
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
@@ -4485,8 +4458,8 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+        clear & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid

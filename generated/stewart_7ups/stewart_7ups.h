@@ -103,16 +103,16 @@ typedef struct {
     stewart_7ups_real ups_J_group_2_in_axes2_xx[8], ups_J_group_2_in_axes2_xy[8],
             ups_J_group_2_in_axes2_xz[8], ups_J_group_2_in_axes2_yy[8], ups_J_group_2_in_axes2_yz[8],
             ups_J_group_2_in_axes2_zz[8], ups_Sigma_2_in_axes2_xx[8], ups_Sigma_2_in_axes2_yy[8],
-            ups_Sigma_2_in_axes2_zz[8], ups_acc_3_t[8], ups_acc_3_t_2[8], ups_acc_3_t_3[8],
-            ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
-            ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
-            ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
-            ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
-            ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
-            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
-            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
-            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_Sigma_2_in_axes2_zz[8], ups_base_frame_xx[8], ups_base_frame_xy[8],
+            ups_base_frame_xz[8], ups_base_frame_yx[8], ups_base_frame_yy[8], ups_base_frame_yz[8],
+            ups_base_frame_zx[8], ups_base_frame_zy[8], ups_base_frame_zz[8], ups_base_point_x[8],
+            ups_base_point_y[8], ups_base_point_z[8], ups_branch_1[8], ups_branch_2[8],
+            ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8], ups_h_2_in_spec2_z[8],
+            ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8], ups_h_3_in_spec2_z[8],
+            ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8], ups_h_group_2_in_axes2_z[8],
+            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8], ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8],
+            ups_potential_t_4[8], ups_potential_t_5[8], ups_potential_t_6[8];
     stewart_7ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -134,41 +134,41 @@ extern const char *const stewart_7ups_ACTUATOR_NAMES[STEWART_7UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *model);
 
-/* Inertia matrix M. 896 mul, 704 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 868 mul, 683 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_7ups_M(const stewart_7ups_model *model, const stewart_7ups_real *X, stewart_7ups_real
     *M);
 size_t stewart_7ups_M_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1160 mul, 865 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1139 mul, 858 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_Z(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *Z);
 size_t stewart_7ups_Z_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     const stewart_7ups_real *V, stewart_7ups_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 217 mul, 161 add, 7 div, 7 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 224 mul, 161 add, 7 div, 7 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int stewart_7ups_H(const stewart_7ups_model *model, const stewart_7ups_real *X, stewart_7ups_real
     *H);
 size_t stewart_7ups_H_batch(const stewart_7ups_model *model, size_t n, const stewart_7ups_real *X,
     stewart_7ups_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 189 mul, 140 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 238 mul, 168 add,
    14 div, 14 sqrt, 14 trig. In: X (NQ). Out: q (NJ). */
 int stewart_7ups_inverse_kinematics(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *q);
 size_t stewart_7ups_inverse_kinematics_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *q, int *status);
 
-/* Rates of all joints. 399 mul, 266 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 371 mul, 245 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int stewart_7ups_joint_rates(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *rates);
 size_t stewart_7ups_joint_rates_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status);
 
-/* Accelerations of all joints. 643 mul, 422 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 615 mul, 401 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_7ups_joint_accelerations(const stewart_7ups_model *model, const stewart_7ups_real *X,
     const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations);
@@ -176,7 +176,7 @@ size_t stewart_7ups_joint_accelerations_batch(const stewart_7ups_model *model, s
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
     stewart_7ups_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1762 mul, 1378 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1741 mul, 1371 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z, stewart_7ups_real *H);
@@ -184,7 +184,7 @@ size_t stewart_7ups_dynamics_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *M, stewart_7ups_real *Z,
     stewart_7ups_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1225 mul, 950
+/* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least norm. 1204 mul, 943
    add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A
    (NV), wrench (NW, or NULL). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -195,7 +195,7 @@ size_t stewart_7ups_inverse_dynamics_batch(const stewart_7ups_model *model, size
     stewart_7ups_real *wrench, stewart_7ups_real *tau, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. tau has the least sum of weights tau^2.
-   1225 mul, 950 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
+   1204 mul, 943 add, 14 div, 14 sqrt, 0 trig; the solution of the linear equations apart. In: X
    (NQ), V (NV), A (NV), wrench (NW, or NULL), weights (NU, positive). Out: tau (NU). */
 int stewart_7ups_inverse_dynamics_weighted(const stewart_7ups_model *model, const
     stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
@@ -205,7 +205,7 @@ size_t stewart_7ups_inverse_dynamics_weighted_batch(const stewart_7ups_model *mo
     stewart_7ups_real *wrench, const stewart_7ups_real *weights, stewart_7ups_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1762 mul, 1378 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1741 mul, 1371 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_forward_dynamics(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -226,7 +226,7 @@ size_t stewart_7ups_complete_acceleration_batch(const stewart_7ups_model *model,
     stewart_7ups_real *wrench, stewart_7ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1063 mul, 835 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (7 x 3). */
 int stewart_7ups_leg_reactions(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
@@ -252,7 +252,7 @@ size_t stewart_7ups_null_space_batch(const stewart_7ups_model *model, size_t n, 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 281 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (7). */
 int stewart_7ups_condition(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *sigma, stewart_7ups_real *legs);
@@ -260,14 +260,14 @@ size_t stewart_7ups_condition_batch(const stewart_7ups_model *model, size_t n, c
     stewart_7ups_real *X, stewart_7ups_real *sigma, stewart_7ups_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular
+   the least over the largest of them. 281 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int stewart_7ups_manipulability(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *measure, stewart_7ups_real *isotropy);
 size_t stewart_7ups_manipulability_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *measure, stewart_7ups_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 274
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 281
    mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int stewart_7ups_singularity_distance(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -278,7 +278,7 @@ size_t stewart_7ups_singularity_distance_batch(const stewart_7ups_model *model, 
 /* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
    the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
    (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
-   negative forces: tau_max = -t keeps tensions of t at least. 1225 mul, 950 add, 14 div, 14 sqrt,
+   negative forces: tau_max = -t keeps tensions of t at least. 1204 mul, 943 add, 14 div, 14 sqrt,
    0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
    or NULL), reference (NU, or NULL). Out: tau (NU). */
 int stewart_7ups_force_distribution(const stewart_7ups_model *model, const stewart_7ups_real *X,
@@ -305,7 +305,7 @@ int stewart_7ups_dissipation(const stewart_7ups_model *model, const stewart_7ups
 size_t stewart_7ups_dissipation_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *dissipation, int *status);
 
-/* Generalised momentum M V. 896 mul, 704 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 868 mul, 683 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_7ups_momentum(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *momentum);
@@ -313,35 +313,35 @@ size_t stewart_7ups_momentum_batch(const stewart_7ups_model *model, size_t n, co
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 189 mul, 140 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
+   where there is none. 238 mul, 168 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
    */
 int stewart_7ups_joint_margins(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *margins);
 size_t stewart_7ups_joint_margins_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 189 mul, 140 add, 14 div, 14 sqrt,
+/* Whether all joints are within their limits of displacement. 238 mul, 168 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: within (1). */
 int stewart_7ups_within_limits(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *within);
 size_t stewart_7ups_within_limits_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 189 mul, 140 add, 14 div, 14 sqrt,
+/* Displacements of the actuated joints, in the order of tau. 238 mul, 168 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: q (NU). */
 int stewart_7ups_actuator_positions(const stewart_7ups_model *model, const stewart_7ups_real *X,
     stewart_7ups_real *q);
 size_t stewart_7ups_actuator_positions_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 399 mul, 266 add, 14 div, 14 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 371 mul, 245 add, 14 div, 14 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int stewart_7ups_actuator_rates(const stewart_7ups_model *model, const stewart_7ups_real *X, const
     stewart_7ups_real *V, stewart_7ups_real *rates);
 size_t stewart_7ups_actuator_rates_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, const stewart_7ups_real *V, stewart_7ups_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 643 mul, 422 add, 14 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 615 mul, 401 add, 14 div, 14 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_7ups_actuator_accelerations(const stewart_7ups_model *model, const stewart_7ups_real
     *X, const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *accelerations);

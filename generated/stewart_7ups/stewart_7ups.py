@@ -567,16 +567,6 @@ def _prepare(p):
     ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
     ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
     ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_acc_3_t = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_acc_3_t_2 = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_acc_3_t_3 = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
     # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
     ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
@@ -642,14 +632,23 @@ def _prepare(p):
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
     # (potential) potential energy
     ups_potential_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
+    )
+    ups_potential_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_potential_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    ups_potential_t_4 = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_potential_t_2 = (
+    ups_potential_t_5 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_potential_t_3 = (
+    ups_potential_t_6 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
@@ -703,9 +702,7 @@ def _prepare(p):
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
                     ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
-                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_Sigma_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
                     ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
@@ -722,12 +719,11 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
-                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -740,11 +736,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -754,11 +748,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -771,11 +763,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -797,11 +787,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -809,25 +797,21 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
@@ -839,14 +823,15 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+                    ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+                    ups_potential_t_6,),
                 ),
             ),
         ),
@@ -854,11 +839,9 @@ def _prepare(p):
         (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1940,7 +1923,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1762 mul, 1378 add, 14 div, 14 sqrt, 0 trig
+# dynamics: 1741 mul, 1371 add, 14 div, 14 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -2045,9 +2028,7 @@ def _run_dynamics(m, X, V):
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2066,26 +2047,23 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2106,9 +2084,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2174,10 +2152,15 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -2329,9 +2312,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_t += ups_Q_t_10
@@ -2449,7 +2432,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 896 mul, 704 add, 14 div, 14 sqrt, 0 trig
+# M: 868 mul, 683 add, 14 div, 14 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2523,11 +2506,10 @@ def _run_M(m, X):
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -2542,26 +2524,23 @@ def _run_M(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2572,9 +2551,9 @@ def _run_M(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
         axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
@@ -2661,9 +2640,9 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_t += ups_Q_t_10
@@ -2749,7 +2728,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1160 mul, 865 add, 14 div, 14 sqrt, 0 trig
+# Z: 1139 mul, 858 add, 14 div, 14 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2846,9 +2825,7 @@ def _run_Z(m, X, V):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2867,26 +2844,23 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2907,9 +2881,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2973,10 +2947,15 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
@@ -3051,9 +3030,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -3082,7 +3061,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 217 mul, 161 add, 7 div, 7 sqrt, 0 trig
+# H: 224 mul, 161 add, 7 div, 7 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3125,10 +3104,9 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3143,20 +3121,20 @@ def _run_H(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3168,8 +3146,9 @@ def _run_H(m, X):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) >
+            _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
@@ -3182,7 +3161,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1225 mul, 950 add, 14 div, 14 sqrt, 0 trig
+# required: 1204 mul, 943 add, 14 div, 14 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3326,9 +3305,7 @@ def _run_required(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -3347,26 +3324,23 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3387,9 +3361,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3456,10 +3430,15 @@ def _run_required(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
@@ -3533,9 +3512,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -3572,7 +3551,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 189 mul, 140 add, 14 div, 14 sqrt, 14 trig
+# inverse_kinematics: 238 mul, 168 add, 14 div, 14 sqrt, 14 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -3644,18 +3623,20 @@ def _run_inverse_kinematics(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3663,8 +3644,8 @@ def _run_inverse_kinematics(m, X):
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -3675,7 +3656,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 399 mul, 266 add, 14 div, 14 sqrt, 0 trig
+# joint_rates: 371 mul, 245 add, 14 div, 14 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3731,10 +3712,9 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3749,26 +3729,23 @@ def _run_joint_rates(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3786,9 +3763,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3808,9 +3785,9 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -3821,7 +3798,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 643 mul, 422 add, 14 div, 14 sqrt, 0 trig
+# joint_accelerations: 615 mul, 401 add, 14 div, 14 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3907,10 +3884,9 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3925,26 +3901,23 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3965,9 +3938,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -4023,9 +3996,9 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
         ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -4036,10 +4009,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig
+# legs: 1063 mul, 835 add, 14 div, 14 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4125,9 +4099,7 @@ def _run_legs(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
@@ -4146,26 +4118,23 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -4186,9 +4155,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -4255,10 +4224,15 @@ def _run_legs(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
         ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
@@ -4331,9 +4305,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -4403,13 +4377,14 @@ def _run_potential(m, X):
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+            ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+            ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+            ups_potential_t_6,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4434,42 +4409,41 @@ def _run_potential(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_2 = ups_branch_1*sqrt(ups_root_1_t_5)
         # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        inv_ups_root_1_2 = 1.0/ups_root_1_2
+        ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x
         # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_3 = ups_q_3_t + ups_root_1_t_5
+        ups_q_3_2 = ups_branch_2*sqrt(ups_q_3_t_3)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-q_2) displacement of joint 2
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        inv_ups_q_3_2 = 1.0/ups_q_3_2
+        ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2_t = inv_ups_q_3_2*ups_S_in_turn1_z
         # (potential) potential energy
-        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_5 = (
-        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
-            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
-            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
+        ups_potential_t_7 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_8 = ups_c_1*ups_potential_t_4 + ups_potential_t_5*ups_s_1
+        ups_potential_t_9 = (
+        (ups_potential_t_7*ups_s_2_t - ups_c_2_2*ups_potential_t_3)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_potential_t_8*ups_s_2_t -
+            ups_c_2_2*ups_potential_t_6)) - (ups_c_1*ups_potential_t_2 -
+            ups_potential_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_5 - ups_potential_t_4*ups_s_1)) -
+            (ups_c_2_2*ups_potential_t_7 + ups_potential_t_3*ups_s_2_t)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2_2*ups_potential_t_8 +
+            ups_potential_t_6*ups_s_2_t))
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_5
+        potential_ups += ups_potential_t_9
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -4477,7 +4451,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 274 mul, 224 add, 7 div, 29 sqrt, 0 trig
+# condition: 281 mul, 224 add, 7 div, 29 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4530,10 +4504,9 @@ def _run_condition(m, X):
     spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4548,21 +4521,21 @@ def _run_condition(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -4570,8 +4543,8 @@ def _run_condition(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_root_1_t)
-        ups_pivot_size_2 = abs(ups_q_3_t)
+        ups_pivot_size = abs(ups_root_1_t_4)
+        ups_pivot_size_2 = abs(ups_q_3_t_2)
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
@@ -4590,8 +4563,8 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+        clear & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid

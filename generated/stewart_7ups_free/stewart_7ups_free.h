@@ -120,23 +120,22 @@ typedef struct {
     stewart_7ups_free_real ups_J_group_2_in_axes2_xx[8], ups_J_group_2_in_axes2_xy[8],
             ups_J_group_2_in_axes2_xz[8], ups_J_group_2_in_axes2_yy[8], ups_J_group_2_in_axes2_yz[8],
             ups_J_group_2_in_axes2_zz[8], ups_Sigma_2_in_axes2_xx[8], ups_Sigma_2_in_axes2_yy[8],
-            ups_Sigma_2_in_axes2_zz[8], ups_acc_3_t[8], ups_acc_3_t_2[8], ups_acc_3_t_3[8],
-            ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
-            ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
-            ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
-            ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
-            ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
-            ups_h_3_in_spec2_z[8], ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8],
-            ups_h_group_2_in_axes2_z[8], ups_link2_mass[8], ups_link3_mass[8],
-            ups_platform_point_x[8], ups_platform_point_y[8], ups_platform_point_z[8],
-            ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8];
+            ups_Sigma_2_in_axes2_zz[8], ups_base_frame_xx[8], ups_base_frame_xy[8],
+            ups_base_frame_xz[8], ups_base_frame_yx[8], ups_base_frame_yy[8], ups_base_frame_yz[8],
+            ups_base_frame_zx[8], ups_base_frame_zy[8], ups_base_frame_zz[8], ups_base_point_x[8],
+            ups_base_point_y[8], ups_base_point_z[8], ups_branch_1[8], ups_branch_2[8],
+            ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8], ups_h_2_in_spec2_z[8],
+            ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8], ups_h_3_in_spec2_z[8],
+            ups_h_group_2_in_axes2_x[8], ups_h_group_2_in_axes2_y[8], ups_h_group_2_in_axes2_z[8],
+            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
+            ups_platform_point_z[8], ups_potential_t[8], ups_potential_t_2[8], ups_potential_t_3[8],
+            ups_potential_t_4[8], ups_potential_t_5[8], ups_potential_t_6[8];
     /* 1 legs of type ups_leg7 */
     stewart_7ups_free_real ups_leg7_J_group_2_in_axes2_xx[1], ups_leg7_J_group_2_in_axes2_xy[1],
             ups_leg7_J_group_2_in_axes2_xz[1], ups_leg7_J_group_2_in_axes2_yy[1],
             ups_leg7_J_group_2_in_axes2_yz[1], ups_leg7_J_group_2_in_axes2_zz[1],
             ups_leg7_Sigma_2_in_axes2_xx[1], ups_leg7_Sigma_2_in_axes2_yy[1],
-            ups_leg7_Sigma_2_in_axes2_zz[1], ups_leg7_acc_3_t[1], ups_leg7_acc_3_t_2[1],
-            ups_leg7_acc_3_t_3[1], ups_leg7_base_frame_xx[1], ups_leg7_base_frame_xy[1],
+            ups_leg7_Sigma_2_in_axes2_zz[1], ups_leg7_base_frame_xx[1], ups_leg7_base_frame_xy[1],
             ups_leg7_base_frame_xz[1], ups_leg7_base_frame_yx[1], ups_leg7_base_frame_yy[1],
             ups_leg7_base_frame_yz[1], ups_leg7_base_frame_zx[1], ups_leg7_base_frame_zy[1],
             ups_leg7_base_frame_zz[1], ups_leg7_base_point_x[1], ups_leg7_base_point_y[1],
@@ -146,7 +145,8 @@ typedef struct {
             ups_leg7_h_group_2_in_axes2_x[1], ups_leg7_h_group_2_in_axes2_y[1],
             ups_leg7_h_group_2_in_axes2_z[1], ups_leg7_link2_mass[1], ups_leg7_link3_mass[1],
             ups_leg7_platform_point_x[1], ups_leg7_platform_point_y[1], ups_leg7_platform_point_z[1],
-            ups_leg7_potential_t[1], ups_leg7_potential_t_2[1], ups_leg7_potential_t_3[1];
+            ups_leg7_potential_t[1], ups_leg7_potential_t_2[1], ups_leg7_potential_t_3[1],
+            ups_leg7_potential_t_4[1], ups_leg7_potential_t_5[1], ups_leg7_potential_t_6[1];
     stewart_7ups_free_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
             J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
             J_star_t_14, J_star_t_15, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
@@ -168,13 +168,13 @@ extern const char *const stewart_7ups_free_ACTUATOR_NAMES[STEWART_7UPS_FREE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7ups_free_model *model);
 
-/* Inertia matrix M. 896 mul, 726 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 868 mul, 705 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_7ups_free_M(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     stewart_7ups_free_real *M);
 size_t stewart_7ups_free_M_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1160 mul, 871 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1139 mul, 864 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int stewart_7ups_free_Z(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     const stewart_7ups_free_real *V, stewart_7ups_free_real *Z);
@@ -182,21 +182,21 @@ size_t stewart_7ups_free_Z_batch(const stewart_7ups_free_model *model, size_t n,
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *Z, int
     *status);
 
-/* Force transformation H: actuators to task space. 186 mul, 138 add, 6 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 192 mul, 138 add, 6 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int stewart_7ups_free_H(const stewart_7ups_free_model *model, const stewart_7ups_free_real *X,
     stewart_7ups_free_real *H);
 size_t stewart_7ups_free_H_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 189 mul, 140 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 238 mul, 168 add,
    14 div, 14 sqrt, 14 trig. In: X (NQ). Out: q (NJ). */
 int stewart_7ups_free_inverse_kinematics(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *q);
 size_t stewart_7ups_free_inverse_kinematics_batch(const stewart_7ups_free_model *model, size_t n,
     const stewart_7ups_free_real *X, stewart_7ups_free_real *q, int *status);
 
-/* Rates of all joints. 399 mul, 266 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 371 mul, 245 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int stewart_7ups_free_joint_rates(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *rates);
@@ -204,7 +204,7 @@ size_t stewart_7ups_free_joint_rates_batch(const stewart_7ups_free_model *model,
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *rates, int
     *status);
 
-/* Accelerations of all joints. 643 mul, 422 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 615 mul, 401 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int stewart_7ups_free_joint_accelerations(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,
@@ -213,7 +213,7 @@ size_t stewart_7ups_free_joint_accelerations_batch(const stewart_7ups_free_model
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, stewart_7ups_free_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1756 mul, 1403 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1735 mul, 1396 add, 14 div, 14 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_7ups_free_dynamics(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M, stewart_7ups_free_real *Z,
@@ -222,7 +222,7 @@ size_t stewart_7ups_free_dynamics_batch(const stewart_7ups_free_model *model, si
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *M,
     stewart_7ups_free_real *Z, stewart_7ups_free_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1219 mul, 953 add, 14 div, 14 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1198 mul, 946 add, 14 div, 14 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int stewart_7ups_free_inverse_dynamics(const stewart_7ups_free_model *model, const
@@ -232,7 +232,7 @@ size_t stewart_7ups_free_inverse_dynamics_batch(const stewart_7ups_free_model *m
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *A, const stewart_7ups_free_real *wrench, stewart_7ups_free_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1756 mul, 1403 add, 14 div, 14
+/* Acceleration A under the actuator forces tau and the wrench. 1735 mul, 1396 add, 14 div, 14
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_7ups_free_forward_dynamics(const stewart_7ups_free_model *model, const
@@ -254,7 +254,7 @@ size_t stewart_7ups_free_complete_acceleration_batch(const stewart_7ups_free_mod
     *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1063 mul, 835 add, 14 div, 14 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (7 x 3). */
 int stewart_7ups_free_leg_reactions(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,
@@ -275,7 +275,7 @@ size_t stewart_7ups_free_energy_batch(const stewart_7ups_free_model *model, size
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 266 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 273 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (7). */
 int stewart_7ups_free_condition(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, stewart_7ups_free_real *sigma, stewart_7ups_free_real *legs);
@@ -284,7 +284,7 @@ size_t stewart_7ups_free_condition_batch(const stewart_7ups_free_model *model, s
     *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 266 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular
+   the least over the largest of them. 273 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular
    values apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int stewart_7ups_free_manipulability(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *measure, stewart_7ups_free_real *isotropy);
@@ -292,7 +292,7 @@ size_t stewart_7ups_free_manipulability_batch(const stewart_7ups_free_model *mod
     const stewart_7ups_free_real *X, stewart_7ups_free_real *measure, stewart_7ups_free_real
     *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 266
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 273
    mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int stewart_7ups_free_singularity_distance(const stewart_7ups_free_model *model, const
@@ -320,7 +320,7 @@ size_t stewart_7ups_free_dissipation_batch(const stewart_7ups_free_model *model,
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real
     *dissipation, int *status);
 
-/* Generalised momentum M V. 896 mul, 726 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 868 mul, 705 add, 14 div, 14 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int stewart_7ups_free_momentum(const stewart_7ups_free_model *model, const stewart_7ups_free_real
     *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *momentum);
@@ -329,28 +329,28 @@ size_t stewart_7ups_free_momentum_batch(const stewart_7ups_free_model *model, si
     int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 189 mul, 140 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
+   where there is none. 238 mul, 168 add, 14 div, 14 sqrt, 14 trig. In: X (NQ). Out: margins (NJ).
    */
 int stewart_7ups_free_joint_margins(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *margins);
 size_t stewart_7ups_free_joint_margins_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 189 mul, 140 add, 14 div, 14 sqrt,
+/* Whether all joints are within their limits of displacement. 238 mul, 168 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: within (1). */
 int stewart_7ups_free_within_limits(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *within);
 size_t stewart_7ups_free_within_limits_batch(const stewart_7ups_free_model *model, size_t n, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 189 mul, 140 add, 14 div, 14 sqrt,
+/* Displacements of the actuated joints, in the order of tau. 238 mul, 168 add, 14 div, 14 sqrt,
    14 trig. In: X (NQ). Out: q (NU). */
 int stewart_7ups_free_actuator_positions(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, stewart_7ups_free_real *q);
 size_t stewart_7ups_free_actuator_positions_batch(const stewart_7ups_free_model *model, size_t n,
     const stewart_7ups_free_real *X, stewart_7ups_free_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 399 mul, 266 add, 14 div, 14 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 371 mul, 245 add, 14 div, 14 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int stewart_7ups_free_actuator_rates(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real *rates);
@@ -358,7 +358,7 @@ size_t stewart_7ups_free_actuator_rates_batch(const stewart_7ups_free_model *mod
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, stewart_7ups_free_real
     *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 643 mul, 422 add, 14 div, 14 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 615 mul, 401 add, 14 div, 14 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int stewart_7ups_free_actuator_accelerations(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,

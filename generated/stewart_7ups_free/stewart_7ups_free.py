@@ -661,16 +661,6 @@ def _prepare(p):
     ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
     ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
     ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_acc_3_t = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_acc_3_t_2 = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_acc_3_t_3 = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
     # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
     ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
@@ -736,14 +726,23 @@ def _prepare(p):
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
     # (potential) potential energy
     ups_potential_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
+    )
+    ups_potential_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_potential_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    ups_potential_t_4 = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_potential_t_2 = (
+    ups_potential_t_5 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_potential_t_3 = (
+    ups_potential_t_6 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
@@ -768,19 +767,6 @@ def _prepare(p):
     ups_leg7_h_3_in_spec2_x = ups_leg7_link3_centre_of_mass_x*ups_leg7_link3_mass
     ups_leg7_h_3_in_spec2_y = ups_leg7_link3_centre_of_mass_y*ups_leg7_link3_mass
     ups_leg7_h_3_in_spec2_z = ups_leg7_link3_centre_of_mass_z*ups_leg7_link3_mass
-    # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_leg7_acc_3_t = (
-    gravity_x*ups_leg7_base_frame_xx + gravity_y*ups_leg7_base_frame_yx +
-        gravity_z*ups_leg7_base_frame_zx
-    )
-    ups_leg7_acc_3_t_2 = (
-    gravity_x*ups_leg7_base_frame_xy + gravity_y*ups_leg7_base_frame_yy +
-        gravity_z*ups_leg7_base_frame_zy
-    )
-    ups_leg7_acc_3_t_3 = (
-    gravity_x*ups_leg7_base_frame_xz + gravity_y*ups_leg7_base_frame_yz +
-        gravity_z*ups_leg7_base_frame_zz
-    )
     # (ups_leg7-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_leg7_J_group_2_t = ups_leg7_link2_centre_of_mass_x*ups_leg7_link2_centre_of_mass_x
     ups_leg7_J_group_2_t_2 = ups_leg7_link2_centre_of_mass_y*ups_leg7_link2_centre_of_mass_y
@@ -854,14 +840,26 @@ def _prepare(p):
     ups_leg7_J_star_t_10 = ups_leg7_link3_mass*(ups_leg7_J_star_t_3 - ups_leg7_J_star_t_4)
     # (potential) potential energy
     ups_leg7_potential_t = (
+    gravity_x*ups_leg7_base_frame_xx + gravity_y*ups_leg7_base_frame_yx +
+        gravity_z*ups_leg7_base_frame_zx
+    )
+    ups_leg7_potential_t_2 = (
+    gravity_x*ups_leg7_base_frame_xy + gravity_y*ups_leg7_base_frame_yy +
+        gravity_z*ups_leg7_base_frame_zy
+    )
+    ups_leg7_potential_t_3 = (
+    gravity_x*ups_leg7_base_frame_xz + gravity_y*ups_leg7_base_frame_yz +
+        gravity_z*ups_leg7_base_frame_zz
+    )
+    ups_leg7_potential_t_4 = (
     ups_leg7_base_frame_xx*ups_leg7_base_point_x + ups_leg7_base_frame_yx*ups_leg7_base_point_y +
         ups_leg7_base_frame_zx*ups_leg7_base_point_z
     )
-    ups_leg7_potential_t_2 = (
+    ups_leg7_potential_t_5 = (
     ups_leg7_base_frame_xy*ups_leg7_base_point_x + ups_leg7_base_frame_yy*ups_leg7_base_point_y +
         ups_leg7_base_frame_zy*ups_leg7_base_point_z
     )
-    ups_leg7_potential_t_3 = (
+    ups_leg7_potential_t_6 = (
     ups_leg7_base_frame_xz*ups_leg7_base_point_x + ups_leg7_base_frame_yz*ups_leg7_base_point_y +
         ups_leg7_base_frame_zz*ups_leg7_base_point_z
     )
@@ -933,9 +931,7 @@ def _prepare(p):
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
                     ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
-                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_Sigma_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
                     ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
@@ -947,10 +943,7 @@ def _prepare(p):
                     ups_leg7_J_group_2_in_axes2_xz, ups_leg7_J_group_2_in_axes2_yy,
                     ups_leg7_J_group_2_in_axes2_yz, ups_leg7_J_group_2_in_axes2_zz,
                     ups_leg7_Sigma_2_in_axes2_xx, ups_leg7_Sigma_2_in_axes2_yy,
-                    ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t, ups_leg7_acc_3_t_2,
-                    ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx, ups_leg7_base_frame_xy,
-                    ups_leg7_base_frame_xz, ups_leg7_base_frame_yx, ups_leg7_base_frame_yy,
-                    ups_leg7_base_frame_yz, ups_leg7_base_frame_zx, ups_leg7_base_frame_zy,
+                    ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_base_frame_xz, ups_leg7_base_frame_yz,
                     ups_leg7_base_frame_zz, ups_leg7_base_point_x, ups_leg7_base_point_y,
                     ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2,
                     ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
@@ -968,20 +961,17 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
-                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
                 (_ups_leg7,
         (ups_leg7_J_group_2_in_axes2_xx, ups_leg7_J_group_2_in_axes2_xy,
                     ups_leg7_J_group_2_in_axes2_xz, ups_leg7_J_group_2_in_axes2_yy,
                     ups_leg7_J_group_2_in_axes2_yz, ups_leg7_J_group_2_in_axes2_zz,
-                    ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-                    ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-                    ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+                    ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
                     ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
                     ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
                     ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z, ups_leg7_platform_point_x,
@@ -998,28 +988,23 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_ups_leg7,
         (ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
                     ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-                    ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-                    ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-                    ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-                    ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
-                    ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1,
-                    ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y,
-                    ups_leg7_h_3_in_spec2_z, ups_leg7_h_group_2_in_axes2_x,
-                    ups_leg7_h_group_2_in_axes2_y, ups_leg7_h_group_2_in_axes2_z,
-                    ups_leg7_platform_point_x, ups_leg7_platform_point_y,
-                    ups_leg7_platform_point_z,),
+                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz,
+                    ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
+                    ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
+                    ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
+                    ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
+                    ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
+                    ups_leg7_h_group_2_in_axes2_z, ups_leg7_platform_point_x,
+                    ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
                 ),
             ),
         ),
@@ -1027,11 +1012,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1044,28 +1027,23 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_ups_leg7,
         (ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
                     ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-                    ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-                    ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-                    ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-                    ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
-                    ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1,
-                    ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y,
-                    ups_leg7_h_3_in_spec2_z, ups_leg7_h_group_2_in_axes2_x,
-                    ups_leg7_h_group_2_in_axes2_y, ups_leg7_h_group_2_in_axes2_z,
-                    ups_leg7_platform_point_x, ups_leg7_platform_point_y,
-                    ups_leg7_platform_point_z,),
+                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz,
+                    ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
+                    ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
+                    ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
+                    ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
+                    ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
+                    ups_leg7_h_group_2_in_axes2_z, ups_leg7_platform_point_x,
+                    ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
                 ),
             ),
         ),
@@ -1093,16 +1071,12 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_ups_leg7,
-        (ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-                    ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-                    ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        (ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
                     ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
                     ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
                     ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
@@ -1113,16 +1087,12 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_ups_leg7,
-        (ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-                    ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-                    ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        (ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
                     ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
                     ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
                     ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
@@ -1130,16 +1100,14 @@ def _prepare(p):
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
@@ -1147,17 +1115,14 @@ def _prepare(p):
                 (_ups_leg7,
         (ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
                     ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-                    ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-                    ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-                    ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-                    ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
-                    ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1,
-                    ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y,
-                    ups_leg7_h_3_in_spec2_z, ups_leg7_h_group_2_in_axes2_x,
-                    ups_leg7_h_group_2_in_axes2_y, ups_leg7_h_group_2_in_axes2_z,
-                    ups_leg7_link3_mass, ups_leg7_platform_point_x, ups_leg7_platform_point_y,
-                    ups_leg7_platform_point_z,),
+                    ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz,
+                    ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
+                    ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
+                    ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
+                    ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
+                    ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
+                    ups_leg7_h_group_2_in_axes2_z, ups_leg7_link3_mass, ups_leg7_platform_point_x,
+                    ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
                 ),
             ),
         ),
@@ -1166,26 +1131,28 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+                    ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+                    ups_potential_t_6,),
                 ),
                 (_ups_leg7,
-        (ups_leg7_acc_3_t, ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-                    ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-                    ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-                    ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
-                    ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1,
-                    ups_leg7_branch_2, ups_leg7_h_2_in_spec2_x, ups_leg7_h_2_in_spec2_y,
-                    ups_leg7_h_2_in_spec2_z, ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y,
-                    ups_leg7_h_3_in_spec2_z, ups_leg7_link2_mass, ups_leg7_platform_point_x,
-                    ups_leg7_platform_point_y, ups_leg7_platform_point_z, ups_leg7_potential_t,
-                    ups_leg7_potential_t_2, ups_leg7_potential_t_3,),
+        (ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
+                    ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
+                    ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+                    ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
+                    ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_2_in_spec2_x,
+                    ups_leg7_h_2_in_spec2_y, ups_leg7_h_2_in_spec2_z, ups_leg7_h_3_in_spec2_x,
+                    ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z, ups_leg7_link2_mass,
+                    ups_leg7_platform_point_x, ups_leg7_platform_point_y,
+                    ups_leg7_platform_point_z, ups_leg7_potential_t, ups_leg7_potential_t_2,
+                    ups_leg7_potential_t_3, ups_leg7_potential_t_4, ups_leg7_potential_t_5,
+                    ups_leg7_potential_t_6,),
                 ),
             ),
         ),
@@ -1193,16 +1160,12 @@ def _prepare(p):
         (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_ups_leg7,
-        (ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-                    ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-                    ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        (ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
                     ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
                     ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
                     ups_leg7_platform_point_y, ups_leg7_platform_point_z,),
@@ -2192,7 +2155,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1756 mul, 1403 add, 14 div, 14 sqrt, 0 trig
+# dynamics: 1735 mul, 1396 add, 14 div, 14 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -2297,9 +2260,7 @@ def _run_dynamics(m, X, V):
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2318,26 +2279,23 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2358,9 +2316,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2426,10 +2384,15 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -2581,9 +2544,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_t += ups_Q_t_10
@@ -2638,10 +2601,7 @@ def _run_dynamics(m, X, V):
             ups_leg7_J_group_2_in_axes2_xz, ups_leg7_J_group_2_in_axes2_yy,
             ups_leg7_J_group_2_in_axes2_yz, ups_leg7_J_group_2_in_axes2_zz,
             ups_leg7_Sigma_2_in_axes2_xx, ups_leg7_Sigma_2_in_axes2_yy,
-            ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t, ups_leg7_acc_3_t_2,
-            ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx, ups_leg7_base_frame_xy,
-            ups_leg7_base_frame_xz, ups_leg7_base_frame_yx, ups_leg7_base_frame_yy,
-            ups_leg7_base_frame_yz, ups_leg7_base_frame_zx, ups_leg7_base_frame_zy,
+            ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_base_frame_xz, ups_leg7_base_frame_yz,
             ups_leg7_base_frame_zz, ups_leg7_base_point_x, ups_leg7_base_point_y,
             ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
             ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z, ups_leg7_h_group_2_in_axes2_x,
@@ -2664,31 +2624,31 @@ def _run_dynamics(m, X, V):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -2709,15 +2669,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -2792,13 +2746,17 @@ def _run_dynamics(m, X, V):
         ups_leg7_B_2_o_in_axes2_zx = ups_leg7_W_2_in_axes2_xz - ups_leg7_alpha_2_o_in_axes2_y
         ups_leg7_B_2_o_in_axes2_zy = ups_leg7_W_2_in_axes2_yz + ups_leg7_alpha_2_o_in_axes2_x
         # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_leg7_acc_3_t_4 = ups_leg7_acc_3_t*ups_leg7_c_1 + ups_leg7_acc_3_t_2*ups_leg7_s_1
-        ups_leg7_g_in_axes2_z = ups_leg7_acc_3_t_2*ups_leg7_c_1 - ups_leg7_acc_3_t*ups_leg7_s_1
         ups_leg7_g_in_axes2_x = (
-        ups_leg7_acc_3_t_3*ups_leg7_e_1_in_axes2_x + ups_leg7_acc_3_t_4*ups_leg7_c_2
+        axis_x_ups_leg7_axes2_x*gravity_x + axis_x_ups_leg7_axes2_y*gravity_y +
+            axis_x_ups_leg7_axes2_z*gravity_z
         )
         ups_leg7_g_in_axes2_y = (
-        ups_leg7_acc_3_t_4*ups_leg7_e_1_in_axes2_x - ups_leg7_acc_3_t_3*ups_leg7_c_2
+        axis_y_ups_leg7_axes2_x*gravity_x + axis_y_ups_leg7_axes2_y*gravity_y +
+            axis_y_ups_leg7_axes2_z*gravity_z
+        )
+        ups_leg7_g_in_axes2_z = (
+        axis_z_ups_leg7_axes2_x*gravity_x + axis_z_ups_leg7_axes2_y*gravity_y +
+            axis_z_ups_leg7_axes2_z*gravity_z
         )
         # (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point
         ups_leg7_phi_3_t = ups_leg7_W_2_in_axes2_xx*ups_leg7_h_3_in_spec2_x
@@ -2972,8 +2930,8 @@ def _run_dynamics(m, X, V):
         ups_leg7_Z_a_t_2 = ups_leg7_U_x*ups_leg7_q_z - ups_leg7_U_z*ups_leg7_q_x
         ups_leg7_Z_a_t_3 = ups_leg7_U_y*ups_leg7_q_x - ups_leg7_U_x*ups_leg7_q_y
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
@@ -3089,7 +3047,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 896 mul, 726 add, 14 div, 14 sqrt, 0 trig
+# M: 868 mul, 705 add, 14 div, 14 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -3163,11 +3121,10 @@ def _run_M(m, X):
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -3182,26 +3139,23 @@ def _run_M(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3212,9 +3166,9 @@ def _run_M(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
         axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
@@ -3301,9 +3255,9 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_6*ups_q_x - ups_M_ta_t_2*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_t += ups_Q_t_10
@@ -3339,9 +3293,7 @@ def _run_M(m, X):
         ups_leg7_J_group_2_in_axes2_xx, ups_leg7_J_group_2_in_axes2_xy,
             ups_leg7_J_group_2_in_axes2_xz, ups_leg7_J_group_2_in_axes2_yy,
             ups_leg7_J_group_2_in_axes2_yz, ups_leg7_J_group_2_in_axes2_zz,
-            ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-            ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-            ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+            ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
             ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
             ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_3_in_spec2_x,
             ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z, ups_leg7_platform_point_x,
@@ -3363,31 +3315,31 @@ def _run_M(m, X):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -3398,15 +3350,9 @@ def _run_M(m, X):
         axis_x_ups_leg7_axes2_y = inv_ups_leg7_q_3*ups_leg7_S_y
         axis_x_ups_leg7_axes2_z = inv_ups_leg7_q_3*ups_leg7_S_z
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         # (ups_leg7-qd_2) rate of joint 2
         axis_y_ups_leg7_axes2_x = (
         axis_x_ups_leg7_axes2_z*axis_z_ups_leg7_axes2_y -
@@ -3510,8 +3456,8 @@ def _run_M(m, X):
         ups_leg7_M_aa_t_5 = ups_leg7_M_ta_t_2*ups_leg7_q_z - ups_leg7_M_ta_t_9*ups_leg7_q_x
         ups_leg7_M_aa_t_6 = ups_leg7_M_ta_t_6*ups_leg7_q_x - ups_leg7_M_ta_t_2*ups_leg7_q_y
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
@@ -3603,7 +3549,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1160 mul, 871 add, 14 div, 14 sqrt, 0 trig
+# Z: 1139 mul, 864 add, 14 div, 14 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -3700,9 +3646,7 @@ def _run_Z(m, X, V):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -3721,26 +3665,23 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -3761,9 +3702,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3827,10 +3768,15 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
@@ -3905,9 +3851,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -3925,11 +3871,8 @@ def _run_Z(m, X, V):
         (
         ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
             ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-            ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-            ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-            ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-            ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
+            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_base_frame_xz,
+            ups_leg7_base_frame_yz, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
             ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2,
             ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
             ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
@@ -3952,31 +3895,31 @@ def _run_Z(m, X, V):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -3997,15 +3940,9 @@ def _run_Z(m, X, V):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -4078,13 +4015,17 @@ def _run_Z(m, X, V):
         ups_leg7_B_2_o_in_axes2_zx = ups_leg7_W_2_in_axes2_xz - ups_leg7_alpha_2_o_in_axes2_y
         ups_leg7_B_2_o_in_axes2_zy = ups_leg7_W_2_in_axes2_yz + ups_leg7_alpha_2_o_in_axes2_x
         # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_leg7_acc_3_t_4 = ups_leg7_acc_3_t*ups_leg7_c_1 + ups_leg7_acc_3_t_2*ups_leg7_s_1
-        ups_leg7_g_in_axes2_z = ups_leg7_acc_3_t_2*ups_leg7_c_1 - ups_leg7_acc_3_t*ups_leg7_s_1
         ups_leg7_g_in_axes2_x = (
-        ups_leg7_acc_3_t_3*ups_leg7_e_1_in_axes2_x + ups_leg7_acc_3_t_4*ups_leg7_c_2
+        axis_x_ups_leg7_axes2_x*gravity_x + axis_x_ups_leg7_axes2_y*gravity_y +
+            axis_x_ups_leg7_axes2_z*gravity_z
         )
         ups_leg7_g_in_axes2_y = (
-        ups_leg7_acc_3_t_4*ups_leg7_e_1_in_axes2_x - ups_leg7_acc_3_t_3*ups_leg7_c_2
+        axis_y_ups_leg7_axes2_x*gravity_x + axis_y_ups_leg7_axes2_y*gravity_y +
+            axis_y_ups_leg7_axes2_z*gravity_z
+        )
+        ups_leg7_g_in_axes2_z = (
+        axis_z_ups_leg7_axes2_x*gravity_x + axis_z_ups_leg7_axes2_y*gravity_y +
+            axis_z_ups_leg7_axes2_z*gravity_z
         )
         # (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point
         ups_leg7_phi_3_t = ups_leg7_W_2_in_axes2_xx*ups_leg7_h_3_in_spec2_x
@@ -4171,8 +4112,8 @@ def _run_Z(m, X, V):
         ups_leg7_Z_a_t_2 = ups_leg7_U_x*ups_leg7_q_z - ups_leg7_U_z*ups_leg7_q_x
         ups_leg7_Z_a_t_3 = ups_leg7_U_y*ups_leg7_q_x - ups_leg7_U_x*ups_leg7_q_y
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
@@ -4202,7 +4143,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 186 mul, 138 add, 6 div, 6 sqrt, 0 trig
+# H: 192 mul, 138 add, 6 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -4245,10 +4186,9 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -4263,20 +4203,20 @@ def _run_H(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -4288,8 +4228,9 @@ def _run_H(m, X):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) >
+            _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
@@ -4302,7 +4243,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1219 mul, 953 add, 14 div, 14 sqrt, 0 trig
+# required: 1198 mul, 946 add, 14 div, 14 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -4446,9 +4387,7 @@ def _run_required(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -4467,26 +4406,23 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -4507,9 +4443,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -4576,10 +4512,15 @@ def _run_required(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
@@ -4653,9 +4594,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -4678,11 +4619,8 @@ def _run_required(m, X, V, A):
         (
         ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
             ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-            ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-            ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-            ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-            ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
+            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_base_frame_xz,
+            ups_leg7_base_frame_yz, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
             ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2,
             ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
             ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
@@ -4705,31 +4643,31 @@ def _run_required(m, X, V, A):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -4750,15 +4688,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -4839,13 +4771,17 @@ def _run_required(m, X, V, A):
         ups_leg7_B_2_in_axes2_zx = ups_leg7_W_2_in_axes2_xz - ups_leg7_alpha_2_in_axes2_y
         ups_leg7_B_2_in_axes2_zy = ups_leg7_W_2_in_axes2_yz + ups_leg7_alpha_2_in_axes2_x
         # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_leg7_acc_3_t_4 = ups_leg7_acc_3_t*ups_leg7_c_1 + ups_leg7_acc_3_t_2*ups_leg7_s_1
-        ups_leg7_g_in_axes2_z = ups_leg7_acc_3_t_2*ups_leg7_c_1 - ups_leg7_acc_3_t*ups_leg7_s_1
         ups_leg7_g_in_axes2_x = (
-        ups_leg7_acc_3_t_3*ups_leg7_e_1_in_axes2_x + ups_leg7_acc_3_t_4*ups_leg7_c_2
+        axis_x_ups_leg7_axes2_x*gravity_x + axis_x_ups_leg7_axes2_y*gravity_y +
+            axis_x_ups_leg7_axes2_z*gravity_z
         )
         ups_leg7_g_in_axes2_y = (
-        ups_leg7_acc_3_t_4*ups_leg7_e_1_in_axes2_x - ups_leg7_acc_3_t_3*ups_leg7_c_2
+        axis_y_ups_leg7_axes2_x*gravity_x + axis_y_ups_leg7_axes2_y*gravity_y +
+            axis_y_ups_leg7_axes2_z*gravity_z
+        )
+        ups_leg7_g_in_axes2_z = (
+        axis_z_ups_leg7_axes2_x*gravity_x + axis_z_ups_leg7_axes2_y*gravity_y +
+            axis_z_ups_leg7_axes2_z*gravity_z
         )
         # (ups_leg7-phi_3) inertia force of link 3 from its turning about its reference point
         ups_leg7_phi_3_t = ups_leg7_W_2_in_axes2_xx*ups_leg7_h_3_in_spec2_x
@@ -4927,8 +4863,8 @@ def _run_required(m, X, V, A):
         ups_leg7_R_a_t_2 = ups_leg7_c_z*ups_leg7_q_x - ups_leg7_c_x*ups_leg7_q_z
         ups_leg7_R_a_t_3 = ups_leg7_c_x*ups_leg7_q_y - ups_leg7_c_y*ups_leg7_q_x
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
@@ -4958,7 +4894,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 189 mul, 140 add, 14 div, 14 sqrt, 14 trig
+# inverse_kinematics: 238 mul, 168 add, 14 div, 14 sqrt, 14 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -5030,18 +4966,20 @@ def _run_inverse_kinematics(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -5049,8 +4987,8 @@ def _run_inverse_kinematics(m, X):
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -5097,19 +5035,29 @@ def _run_inverse_kinematics(m, X):
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
         # (ups_leg7-q_1) displacement of joint 1
-        ups_leg7_q_1 = atan2(ups_leg7_s_1, ups_leg7_c_1)
+        inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
+        ups_leg7_q_1 = (
+        atan2(inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y,
+            inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x)
+        )
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -5117,8 +5065,8 @@ def _run_inverse_kinematics(m, X):
         ups_leg7_e_1_in_axes2_x = inv_ups_leg7_q_3*ups_leg7_S_in_turn1_z
         ups_leg7_q_2 = atan2(-ups_leg7_e_1_in_axes2_x, ups_leg7_c_2)
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups_leg7-q_1) displacement of joint 1
         out_q[_q_ups_leg7[0][leg]] = ups_leg7_q_1
@@ -5129,7 +5077,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 399 mul, 266 add, 14 div, 14 sqrt, 0 trig
+# joint_rates: 371 mul, 245 add, 14 div, 14 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -5185,10 +5133,9 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -5203,26 +5150,23 @@ def _run_joint_rates(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -5240,9 +5184,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -5262,9 +5206,9 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -5274,9 +5218,7 @@ def _run_joint_rates(m, X, V):
         out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
     for leg, k in legs[1]:
         (
-        ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-            ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-            ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
             ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
             ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
             ups_leg7_platform_point_y, ups_leg7_platform_point_z,
@@ -5297,31 +5239,31 @@ def _run_joint_rates(m, X, V):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         # (ups_leg7-S_dot) velocity of the connection point
@@ -5339,15 +5281,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -5370,8 +5306,8 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_y_ups_leg7_axes2_z*ups_leg7_S_dot_z)
         )
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (ups_leg7-qd_1) rate of joint 1
@@ -5383,7 +5319,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 643 mul, 422 add, 14 div, 14 sqrt, 0 trig
+# joint_accelerations: 615 mul, 401 add, 14 div, 14 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -5469,10 +5405,9 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -5487,26 +5422,23 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -5527,9 +5459,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -5585,9 +5517,9 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
         ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -5597,9 +5529,7 @@ def _run_joint_accelerations(m, X, V, A):
         out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
     for leg, k in legs[1]:
         (
-        ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-            ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-            ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
             ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
             ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
             ups_leg7_platform_point_y, ups_leg7_platform_point_z,
@@ -5620,31 +5550,31 @@ def _run_joint_accelerations(m, X, V, A):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -5665,15 +5595,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -5745,8 +5669,8 @@ def _run_joint_accelerations(m, X, V, A):
         )
         ups_leg7_qdd_2 = ups_leg7_qdd_2_t_2 - ups_leg7_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (ups_leg7-qdd_1) acceleration of joint 1
@@ -5758,10 +5682,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1084 mul, 842 add, 14 div, 14 sqrt, 0 trig
+# legs: 1063 mul, 835 add, 14 div, 14 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -5847,9 +5772,7 @@ def _run_legs(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
@@ -5868,26 +5791,23 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -5908,9 +5828,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -5977,10 +5897,15 @@ def _run_legs(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
         ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
@@ -6053,9 +5978,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -6069,11 +5994,8 @@ def _run_legs(m, X, V, A):
         (
         ups_leg7_J_group_2_in_axes2_xy, ups_leg7_J_group_2_in_axes2_xz,
             ups_leg7_J_group_2_in_axes2_yz, ups_leg7_Sigma_2_in_axes2_xx,
-            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_acc_3_t,
-            ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-            ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-            ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-            ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
+            ups_leg7_Sigma_2_in_axes2_yy, ups_leg7_Sigma_2_in_axes2_zz, ups_leg7_base_frame_xz,
+            ups_leg7_base_frame_yz, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
             ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2,
             ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
             ups_leg7_h_group_2_in_axes2_x, ups_leg7_h_group_2_in_axes2_y,
@@ -6096,31 +6018,31 @@ def _run_legs(m, X, V, A):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
-        # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
+        # (ups_leg7-q_1) displacement of joint 1
         inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
-        # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
         ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
@@ -6141,15 +6063,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_leg7_axes2_z*ups_leg7_S_dot_z
         )
         # (ups_leg7-qd_1) rate of joint 1
-        axis_z_ups_leg7_axes2_x = (
-        ups_leg7_base_frame_xy*ups_leg7_c_1 - ups_leg7_base_frame_xx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_y = (
-        ups_leg7_base_frame_yy*ups_leg7_c_1 - ups_leg7_base_frame_yx*ups_leg7_s_1
-        )
-        axis_z_ups_leg7_axes2_z = (
-        ups_leg7_base_frame_zy*ups_leg7_c_1 - ups_leg7_base_frame_zx*ups_leg7_s_1
-        )
+        axis_z_ups_leg7_axes2_x = inv_ups_leg7_root_1*ups_leg7_root_1_t
+        axis_z_ups_leg7_axes2_y = inv_ups_leg7_root_1*ups_leg7_root_1_t_2
+        axis_z_ups_leg7_axes2_z = inv_ups_leg7_root_1*ups_leg7_root_1_t_3
         ups_leg7_qd_1 = (
         inv_ups_leg7_root_1*(axis_z_ups_leg7_axes2_x*ups_leg7_S_dot_x +
             axis_z_ups_leg7_axes2_y*ups_leg7_S_dot_y + axis_z_ups_leg7_axes2_z*ups_leg7_S_dot_z)
@@ -6230,13 +6146,17 @@ def _run_legs(m, X, V, A):
         ups_leg7_B_2_in_axes2_zx = ups_leg7_W_2_in_axes2_xz - ups_leg7_alpha_2_in_axes2_y
         ups_leg7_B_2_in_axes2_zy = ups_leg7_W_2_in_axes2_yz + ups_leg7_alpha_2_in_axes2_x
         # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_leg7_acc_3_t_4 = ups_leg7_acc_3_t*ups_leg7_c_1 + ups_leg7_acc_3_t_2*ups_leg7_s_1
-        ups_leg7_g_in_axes2_z = ups_leg7_acc_3_t_2*ups_leg7_c_1 - ups_leg7_acc_3_t*ups_leg7_s_1
         ups_leg7_g_in_axes2_x = (
-        ups_leg7_acc_3_t_3*ups_leg7_e_1_in_axes2_x + ups_leg7_acc_3_t_4*ups_leg7_c_2
+        axis_x_ups_leg7_axes2_x*gravity_x + axis_x_ups_leg7_axes2_y*gravity_y +
+            axis_x_ups_leg7_axes2_z*gravity_z
         )
         ups_leg7_g_in_axes2_y = (
-        ups_leg7_acc_3_t_4*ups_leg7_e_1_in_axes2_x - ups_leg7_acc_3_t_3*ups_leg7_c_2
+        axis_y_ups_leg7_axes2_x*gravity_x + axis_y_ups_leg7_axes2_y*gravity_y +
+            axis_y_ups_leg7_axes2_z*gravity_z
+        )
+        ups_leg7_g_in_axes2_z = (
+        axis_z_ups_leg7_axes2_x*gravity_x + axis_z_ups_leg7_axes2_y*gravity_y +
+            axis_z_ups_leg7_axes2_z*gravity_z
         )
         ups_leg7_acc_3_in_axes2_x = ups_leg7_S_ddot_in_axes2_x - ups_leg7_g_in_axes2_x
         ups_leg7_acc_3_in_axes2_y = ups_leg7_S_ddot_in_axes2_y - ups_leg7_g_in_axes2_y
@@ -6327,8 +6247,8 @@ def _run_legs(m, X, V, A):
             axis_z_ups_leg7_axes2_z*ups_leg7_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        ok & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (ups_leg7-c_true) leg force on the platform without actuation, the last link's mass included
@@ -6395,13 +6315,14 @@ def _run_potential(m, X):
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+            ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+            ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+            ups_potential_t_6,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -6426,55 +6347,54 @@ def _run_potential(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_2 = ups_branch_1*sqrt(ups_root_1_t_5)
         # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        inv_ups_root_1_2 = 1.0/ups_root_1_2
+        ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x
         # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_3 = ups_q_3_t + ups_root_1_t_5
+        ups_q_3_2 = ups_branch_2*sqrt(ups_q_3_t_3)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-q_2) displacement of joint 2
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        inv_ups_q_3_2 = 1.0/ups_q_3_2
+        ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2_t = inv_ups_q_3_2*ups_S_in_turn1_z
         # (potential) potential energy
-        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_5 = (
-        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
-            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
-            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
+        ups_potential_t_7 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_8 = ups_c_1*ups_potential_t_4 + ups_potential_t_5*ups_s_1
+        ups_potential_t_9 = (
+        (ups_potential_t_7*ups_s_2_t - ups_c_2_2*ups_potential_t_3)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_potential_t_8*ups_s_2_t -
+            ups_c_2_2*ups_potential_t_6)) - (ups_c_1*ups_potential_t_2 -
+            ups_potential_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_5 - ups_potential_t_4*ups_s_1)) -
+            (ups_c_2_2*ups_potential_t_7 + ups_potential_t_3*ups_s_2_t)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2_2*ups_potential_t_8 +
+            ups_potential_t_6*ups_s_2_t))
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_5
+        potential_ups += ups_potential_t_9
     potential_ups_leg7, = [0.0] * 1
     for leg, k in legs[1]:
         (
-        ups_leg7_acc_3_t, ups_leg7_acc_3_t_2, ups_leg7_acc_3_t_3, ups_leg7_base_frame_xx,
-            ups_leg7_base_frame_xy, ups_leg7_base_frame_xz, ups_leg7_base_frame_yx,
-            ups_leg7_base_frame_yy, ups_leg7_base_frame_yz, ups_leg7_base_frame_zx,
-            ups_leg7_base_frame_zy, ups_leg7_base_frame_zz, ups_leg7_base_point_x,
-            ups_leg7_base_point_y, ups_leg7_base_point_z, ups_leg7_branch_1, ups_leg7_branch_2,
-            ups_leg7_h_2_in_spec2_x, ups_leg7_h_2_in_spec2_y, ups_leg7_h_2_in_spec2_z,
-            ups_leg7_h_3_in_spec2_x, ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z,
-            ups_leg7_link2_mass, ups_leg7_platform_point_x, ups_leg7_platform_point_y,
-            ups_leg7_platform_point_z, ups_leg7_potential_t, ups_leg7_potential_t_2,
-            ups_leg7_potential_t_3,
+        ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
+            ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
+            ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+            ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
+            ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_h_2_in_spec2_x,
+            ups_leg7_h_2_in_spec2_y, ups_leg7_h_2_in_spec2_z, ups_leg7_h_3_in_spec2_x,
+            ups_leg7_h_3_in_spec2_y, ups_leg7_h_3_in_spec2_z, ups_leg7_link2_mass,
+            ups_leg7_platform_point_x, ups_leg7_platform_point_y, ups_leg7_platform_point_z,
+            ups_leg7_potential_t, ups_leg7_potential_t_2, ups_leg7_potential_t_3,
+            ups_leg7_potential_t_4, ups_leg7_potential_t_5, ups_leg7_potential_t_6,
         ) = k
         # (ups_leg7-S) from the base point to the connection point
         ups_leg7_q_x = (
@@ -6505,53 +6425,49 @@ def _run_potential(m, X):
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_leg7_root_1_t = (
+        ups_leg7_root_1_t_5 = (
         ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
+        ups_leg7_root_1_2 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_5)
         # (ups_leg7-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_leg7_root_1 = 1.0/ups_leg7_root_1
-        ups_leg7_c_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_x
+        inv_ups_leg7_root_1_2 = 1.0/ups_leg7_root_1_2
+        ups_leg7_c_1 = inv_ups_leg7_root_1_2*ups_leg7_S_in_turn1_x
         # (ups_leg7-s_1) sine of the angle of joint 1 from its reference direction
-        ups_leg7_s_1 = inv_ups_leg7_root_1*ups_leg7_S_in_turn1_y
+        ups_leg7_s_1 = inv_ups_leg7_root_1_2*ups_leg7_S_in_turn1_y
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_3 = ups_leg7_q_3_t + ups_leg7_root_1_t_5
+        ups_leg7_q_3_2 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_3)
         # (ups_leg7-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_leg7_q_3 = 1.0/ups_leg7_q_3
-        ups_leg7_c_2 = inv_ups_leg7_q_3*ups_leg7_root_1
-        # (ups_leg7-q_2) displacement of joint 2
-        ups_leg7_e_1_in_axes2_x = inv_ups_leg7_q_3*ups_leg7_S_in_turn1_z
-        # (ups_leg7-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_leg7_acc_3_t_4 = ups_leg7_acc_3_t*ups_leg7_c_1 + ups_leg7_acc_3_t_2*ups_leg7_s_1
-        ups_leg7_g_in_axes2_z = ups_leg7_acc_3_t_2*ups_leg7_c_1 - ups_leg7_acc_3_t*ups_leg7_s_1
-        ups_leg7_g_in_axes2_x = (
-        ups_leg7_acc_3_t_3*ups_leg7_e_1_in_axes2_x + ups_leg7_acc_3_t_4*ups_leg7_c_2
-        )
-        ups_leg7_g_in_axes2_y = (
-        ups_leg7_acc_3_t_4*ups_leg7_e_1_in_axes2_x - ups_leg7_acc_3_t_3*ups_leg7_c_2
-        )
+        inv_ups_leg7_q_3_2 = 1.0/ups_leg7_q_3_2
+        ups_leg7_c_2_2 = inv_ups_leg7_q_3_2*ups_leg7_root_1_2
+        # (ups_leg7-s_2) sine of the angle of joint 2 from its reference direction
+        ups_leg7_s_2_t = inv_ups_leg7_q_3_2*ups_leg7_S_in_turn1_z
         # (potential) potential energy
-        ups_leg7_potential_t_4 = (
+        ups_leg7_potential_t_7 = (
         ups_leg7_c_1*ups_leg7_potential_t + ups_leg7_potential_t_2*ups_leg7_s_1
         )
-        ups_leg7_potential_t_5 = (
-        ups_leg7_g_in_axes2_x*(ups_leg7_h_2_in_spec2_x + ups_leg7_h_3_in_spec2_x +
-            ups_leg7_link2_mass*(ups_leg7_c_2*ups_leg7_potential_t_4 +
-            ups_leg7_e_1_in_axes2_x*ups_leg7_potential_t_3)) +
-            ups_leg7_g_in_axes2_z*(ups_leg7_h_2_in_spec2_y + ups_leg7_h_3_in_spec2_y +
-            ups_leg7_link2_mass*(ups_leg7_c_1*ups_leg7_potential_t_2 -
-            ups_leg7_potential_t*ups_leg7_s_1)) - ups_leg7_g_in_axes2_y*(ups_leg7_h_2_in_spec2_z +
-            ups_leg7_h_3_in_spec2_z -
-            ups_leg7_link2_mass*(ups_leg7_e_1_in_axes2_x*ups_leg7_potential_t_4 -
-            ups_leg7_c_2*ups_leg7_potential_t_3))
+        ups_leg7_potential_t_8 = (
+        ups_leg7_c_1*ups_leg7_potential_t_4 + ups_leg7_potential_t_5*ups_leg7_s_1
+        )
+        ups_leg7_potential_t_9 = (
+        (ups_leg7_c_1*ups_leg7_potential_t_2 -
+            ups_leg7_potential_t*ups_leg7_s_1)*(ups_leg7_h_2_in_spec2_y + ups_leg7_h_3_in_spec2_y
+            + ups_leg7_link2_mass*(ups_leg7_c_1*ups_leg7_potential_t_5 -
+            ups_leg7_potential_t_4*ups_leg7_s_1)) + (ups_leg7_c_2_2*ups_leg7_potential_t_7 +
+            ups_leg7_potential_t_3*ups_leg7_s_2_t)*(ups_leg7_h_2_in_spec2_x +
+            ups_leg7_h_3_in_spec2_x + ups_leg7_link2_mass*(ups_leg7_c_2_2*ups_leg7_potential_t_8 +
+            ups_leg7_potential_t_6*ups_leg7_s_2_t)) - (ups_leg7_potential_t_7*ups_leg7_s_2_t -
+            ups_leg7_c_2_2*ups_leg7_potential_t_3)*(ups_leg7_h_2_in_spec2_z +
+            ups_leg7_h_3_in_spec2_z - ups_leg7_link2_mass*(ups_leg7_potential_t_8*ups_leg7_s_2_t -
+            ups_leg7_c_2_2*ups_leg7_potential_t_6))
         )
         ok = (
-        ok & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_leg7_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups_leg7 += -ups_leg7_potential_t_5
+        potential_ups_leg7 += -ups_leg7_potential_t_9
     # (potential) potential energy
     potential = potential_ups + potential_ups_leg7 - potential_t
     # (potential) potential energy
@@ -6559,7 +6475,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 266 mul, 222 add, 6 div, 29 sqrt, 0 trig
+# condition: 273 mul, 222 add, 6 div, 29 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -6612,10 +6528,9 @@ def _run_condition(m, X):
     spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_q_x = (
@@ -6630,21 +6545,21 @@ def _run_condition(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -6652,8 +6567,8 @@ def _run_condition(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_root_1_t)
-        ups_pivot_size_2 = abs(ups_q_3_t)
+        ups_pivot_size = abs(ups_root_1_t_4)
+        ups_pivot_size_2 = abs(ups_q_3_t_2)
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
@@ -6672,8 +6587,8 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+        clear & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid
@@ -6691,9 +6606,7 @@ def _run_condition(m, X):
     spread_ups_leg7, = [0.0] * 1
     for leg, k in legs[1]:
         (
-        ups_leg7_base_frame_xx, ups_leg7_base_frame_xy, ups_leg7_base_frame_xz,
-            ups_leg7_base_frame_yx, ups_leg7_base_frame_yy, ups_leg7_base_frame_yz,
-            ups_leg7_base_frame_zx, ups_leg7_base_frame_zy, ups_leg7_base_frame_zz,
+        ups_leg7_base_frame_xz, ups_leg7_base_frame_yz, ups_leg7_base_frame_zz,
             ups_leg7_base_point_x, ups_leg7_base_point_y, ups_leg7_base_point_z,
             ups_leg7_branch_1, ups_leg7_branch_2, ups_leg7_platform_point_x,
             ups_leg7_platform_point_y, ups_leg7_platform_point_z,
@@ -6714,29 +6627,32 @@ def _run_condition(m, X):
         ups_leg7_S_x = t_x + ups_leg7_q_x - ups_leg7_base_point_x
         ups_leg7_S_y = t_y + ups_leg7_q_y - ups_leg7_base_point_y
         ups_leg7_S_z = t_z + ups_leg7_q_z - ups_leg7_base_point_z
-        ups_leg7_S_in_turn1_x = (
-        ups_leg7_S_x*ups_leg7_base_frame_xx + ups_leg7_S_y*ups_leg7_base_frame_yx +
-            ups_leg7_S_z*ups_leg7_base_frame_zx
-        )
-        ups_leg7_S_in_turn1_y = (
-        ups_leg7_S_x*ups_leg7_base_frame_xy + ups_leg7_S_y*ups_leg7_base_frame_yy +
-            ups_leg7_S_z*ups_leg7_base_frame_zy
-        )
         ups_leg7_S_in_turn1_z = (
         ups_leg7_S_x*ups_leg7_base_frame_xz + ups_leg7_S_y*ups_leg7_base_frame_yz +
             ups_leg7_S_z*ups_leg7_base_frame_zz
         )
         # (ups_leg7-root_1) amplitude, the length across axis 1, with the sign of the branch
         ups_leg7_root_1_t = (
-        ups_leg7_S_in_turn1_x*ups_leg7_S_in_turn1_x + ups_leg7_S_in_turn1_y*ups_leg7_S_in_turn1_y
+        ups_leg7_S_z*ups_leg7_base_frame_yz - ups_leg7_S_y*ups_leg7_base_frame_zz
         )
-        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t)
+        ups_leg7_root_1_t_2 = (
+        ups_leg7_S_x*ups_leg7_base_frame_zz - ups_leg7_S_z*ups_leg7_base_frame_xz
+        )
+        ups_leg7_root_1_t_3 = (
+        ups_leg7_S_y*ups_leg7_base_frame_xz - ups_leg7_S_x*ups_leg7_base_frame_yz
+        )
+        ups_leg7_root_1_t_4 = (
+        ups_leg7_root_1_t*ups_leg7_root_1_t + ups_leg7_root_1_t_2*ups_leg7_root_1_t_2 +
+            ups_leg7_root_1_t_3*ups_leg7_root_1_t_3
+        )
+        ups_leg7_root_1 = ups_leg7_branch_1*sqrt(ups_leg7_root_1_t_4)
         # (ups_leg7-q_3) displacement of joint 3
-        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z + ups_leg7_root_1_t
-        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t)
+        ups_leg7_q_3_t = ups_leg7_S_in_turn1_z*ups_leg7_S_in_turn1_z
+        ups_leg7_q_3_t_2 = ups_leg7_q_3_t + ups_leg7_root_1_t_4
+        ups_leg7_q_3 = ups_leg7_branch_2*sqrt(ups_leg7_q_3_t_2)
         # (ups_leg7-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_leg7_pivot_size = abs(ups_leg7_root_1_t)
-        ups_leg7_pivot_size_2 = abs(ups_leg7_q_3_t)
+        ups_leg7_pivot_size = abs(ups_leg7_root_1_t_4)
+        ups_leg7_pivot_size_2 = abs(ups_leg7_q_3_t_2)
         ups_leg7_pivot_size_3 = abs(ups_leg7_root_1)
         ups_leg7_pivot_size_4 = abs(ups_leg7_q_3)
         ups_leg7_least_pivots = (
@@ -6752,8 +6668,8 @@ def _run_condition(m, X):
             ups_leg7_spread_t_3*ups_leg7_spread_t_3
         )
         clear = (
-        clear & (abs(ups_leg7_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_leg7_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+        clear & (abs(ups_leg7_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_leg7_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid

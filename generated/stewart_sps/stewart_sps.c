@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && STEWART_SPS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -162,6 +187,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -188,6 +214,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -247,19 +274,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -307,10 +337,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -362,6 +394,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -945,6 +978,7 @@ APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, rea
         real *restrict other)
 {
     for (size_t j = p; j <= n; ++j) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
             pivot[j*LANES + k] = best[k] == i ? up : down;
@@ -958,17 +992,20 @@ INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
     real most[LANES], best[LANES], any = 0;
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
         best[k] = 0;
     }
     for (size_t i = p + 1; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real size = magnitude(a[i*row + p*LANES + k]);
             best[k] = size > most[k] ? (real)i : best[k];
             most[k] = larger(size, most[k]);
         }
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         any += best[k];
     }
@@ -986,14 +1023,17 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             size[k] = 1/size[k];
         }
         for (size_t j = 0; j <= n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + j*LANES + k] *= size[k];
             }
@@ -1002,6 +1042,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t p = 0; p < n; ++p) {
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
@@ -1009,10 +1050,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         for (size_t i = p + 1; i < n; ++i) {
             real *const other = a + i*row;
             real factor[LANES];
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 factor[k] = other[p*LANES + k]*x[p*LANES + k];
             }
             for (size_t j = p + 1; j <= n; ++j) {
+                SHORT_IN_VECTORS
                 for (size_t k = 0; k < LANES; ++k) {
                     other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
                 }
@@ -1020,10 +1063,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = n; p-- > 0;) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             x[p*LANES + k] *= a[p*row + n*LANES + k];
         }
         for (size_t i = 0; i < p; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
             }
@@ -1253,6 +1298,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1269,6 +1315,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1278,6 +1325,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1328,6 +1376,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1358,6 +1407,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -2219,6 +2269,87 @@ INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, val
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_sums_sps(size_t k, size_t count, int add, const values_sps *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->sps_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->sps_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->sps_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->sps_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->sps_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->sps_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->sps_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, v->sps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v->sps_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->sps_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->sps_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->sps_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->sps_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->sps_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->sps_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->sps_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->sps_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->sps_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->sps_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->sps_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_sps_2(size_t k, size_t count, int add, const values_sps *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->sps_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->sps_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->sps_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->sps_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->sps_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->sps_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_sps(size_t k, size_t count, const values_sps *v, real *o)
+{
+    /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
+       joint 3 */
+    o[0*count + k] = v->sps_mu_3_o_in_axes3_z;
+}
+
+INLINE void any_entries_sps_2(const prepared *m, size_t i, size_t k, size_t count, const
+    values_sps *v, real *o)
+{
+    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
+       degree of freedom of joint 3 */
+    o[0*count + k] = v->sps_d_P_3_x;
+    o[1*count + k] = v->sps_d_P_3_x;
+    o[2*count + k] = v->sps_d_P_3_y;
+    o[3*count + k] = v->sps_d_P_3_y;
+    o[4*count + k] = v->sps_d_P_3_z;
+    o[5*count + k] = v->sps_d_P_3_z;
+    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
+    o[6*count + k] = v->sps_M_ya_3_x;
+    o[7*count + k] = v->sps_M_ya_3_x;
+    o[8*count + k] = v->sps_M_ya_3_y;
+    o[9*count + k] = v->sps_M_ya_3_y;
+    o[10*count + k] = v->sps_M_ya_3_z;
+    o[11*count + k] = v->sps_M_ya_3_z;
+    /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
+       extra degree of freedom of joint 3 */
+    o[12*count + k] = m->sps_J_group_3_in_axes3_zz[i];
+}
+
+INLINE void any_entries_sps_3(size_t k, size_t count, const values_sps *v, real *o)
+{
+    /* (sps-w_4) reciprocal vector 3 */
+    o[0*count + k] = v->sps_w_4_x;
+    o[1*count + k] = v->sps_w_4_y;
+    o[2*count + k] = v->sps_w_4_z;
+    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->sps_H_a_4_x;
+    o[4*count + k] = v->sps_H_a_4_y;
+    o[5*count + k] = v->sps_H_a_4_z;
+}
+
 INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     status_flags *t)
 {
@@ -2285,73 +2416,18 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_M_dynamics(m, i, &v);
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.sps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.sps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.sps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.sps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.sps_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.sps_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.sps_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.sps_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.sps_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.sps_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.sps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 3 */
-    o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
-    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 3 */
-    o[1*count + k] = v.sps_d_P_3_x;
-    o[2*count + k] = v.sps_d_P_3_x;
-    o[3*count + k] = v.sps_d_P_3_y;
-    o[4*count + k] = v.sps_d_P_3_y;
-    o[5*count + k] = v.sps_d_P_3_z;
-    o[6*count + k] = v.sps_d_P_3_z;
-    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-    o[7*count + k] = v.sps_M_ya_3_x;
-    o[8*count + k] = v.sps_M_ya_3_x;
-    o[9*count + k] = v.sps_M_ya_3_y;
-    o[10*count + k] = v.sps_M_ya_3_y;
-    o[11*count + k] = v.sps_M_ya_3_z;
-    o[12*count + k] = v.sps_M_ya_3_z;
-    /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 3 */
-    o[13*count + k] = m->sps_J_group_3_in_axes3_zz[i];
-    /* (sps-w_4) reciprocal vector 3 */
-    o[14*count + k] = v.sps_w_4_x;
-    o[15*count + k] = v.sps_w_4_y;
-    o[16*count + k] = v.sps_w_4_z;
-    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-    o[17*count + k] = v.sps_H_a_4_x;
-    o[18*count + k] = v.sps_H_a_4_y;
-    o[19*count + k] = v.sps_H_a_4_z;
+    any_sums_sps(k, count, add, &v, terms);
+    any_sums_sps_2(k, count, add, &v, terms + 20*count);
+    any_entries_sps(k, count, &v, o);
+    any_entries_sps_2(m, i, k, count, &v, o + 1*count);
+    any_entries_sps_3(k, count, &v, o + 14*count);
+    o[20*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+        LEAST_2);
     o[21*count + k] = ((v.sps_mu_3_o_in_axes3_z + (v.sps_d_P_3_x + v.sps_d_P_3_y)) +
         ((v.sps_d_P_3_z + v.sps_M_ya_3_x) + (v.sps_M_ya_3_y + v.sps_M_ya_3_z))) +
         ((m->sps_J_group_3_in_axes3_zz[i] + (v.sps_w_4_x + v.sps_w_4_y)) + ((v.sps_w_4_z +
         v.sps_H_a_4_x) + (v.sps_H_a_4_y + v.sps_H_a_4_z)));
-    o[20*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
-        LEAST_2);
 }
 
 INLINE void dynamics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2384,14 +2460,14 @@ INLINE void dynamics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2410,7 +2486,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2429,7 +2505,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2439,7 +2515,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2514,6 +2590,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     clear(H, NV*NU);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         dynamics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
@@ -2530,10 +2607,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_sps[22*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_sps[22*LANES];
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2541,13 +2619,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_sps(LANES, i, k, k, LANES, o_sps, M, Z, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2560,52 +2641,13 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.sps_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.sps_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.sps_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.sps_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.sps_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.sps_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.sps_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v.sps_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.sps_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.sps_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.sps_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.sps_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.sps_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.sps_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.sps_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.sps_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.sps_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.sps_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.sps_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.sps_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
-       degree of freedom of joint 3 */
-    o[0*count + k] = v.sps_d_P_3_x;
-    o[1*count + k] = v.sps_d_P_3_x;
-    o[2*count + k] = v.sps_d_P_3_y;
-    o[3*count + k] = v.sps_d_P_3_y;
-    o[4*count + k] = v.sps_d_P_3_z;
-    o[5*count + k] = v.sps_d_P_3_z;
-    /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-    o[6*count + k] = v.sps_M_ya_3_x;
-    o[7*count + k] = v.sps_M_ya_3_x;
-    o[8*count + k] = v.sps_M_ya_3_y;
-    o[9*count + k] = v.sps_M_ya_3_y;
-    o[10*count + k] = v.sps_M_ya_3_z;
-    o[11*count + k] = v.sps_M_ya_3_z;
-    /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
-       extra degree of freedom of joint 3 */
-    o[12*count + k] = m->sps_J_group_3_in_axes3_zz[i];
-    o[14*count + k] = (v.sps_d_P_3_x + (v.sps_d_P_3_y + v.sps_d_P_3_z)) + ((v.sps_M_ya_3_x +
-        v.sps_M_ya_3_y) + (v.sps_M_ya_3_z + m->sps_J_group_3_in_axes3_zz[i]));
+    any_sums_sps(k, count, add, &v, terms);
+    any_entries_sps_2(m, i, k, count, &v, o);
     o[13*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
+    o[14*count + k] = (v.sps_d_P_3_x + (v.sps_d_P_3_y + v.sps_d_P_3_z)) + ((v.sps_M_ya_3_x +
+        v.sps_M_ya_3_y) + (v.sps_M_ya_3_z + m->sps_J_group_3_in_axes3_zz[i]));
 }
 
 INLINE void M_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -2631,14 +2673,14 @@ INLINE void M_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2657,7 +2699,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2731,6 +2773,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     clear(M, NV*NV);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         M_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
@@ -2746,22 +2789,26 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_sps[15*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, sums, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_place_sps(LANES, i, k, k, LANES, o_sps, M, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2786,21 +2833,12 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_sps_X(m, w, i, j, s, X, &v);
     stage_sps_V_X(m, w, i, j, V, &v);
     stage_sps_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (sps-P_3_o) remainder of: inertia and weight of the leg along the extra degree of freedom of
-       joint 3 */
-    o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
-    o[2*count + k] = v.sps_mu_3_o_in_axes3_z;
+    any_sums_sps_2(k, count, add, &v, terms);
+    any_entries_sps(k, count, &v, o);
     o[1*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
+    o[2*count + k] = v.sps_mu_3_o_in_axes3_z;
 }
 
 INLINE void Z_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -2813,7 +2851,7 @@ INLINE void Z_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2823,7 +2861,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2850,6 +2888,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_sps[6*LEGS(LEGS_OF_sps)] CLEARED, o_sps[3*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         Z_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, V, terms_sps, o_sps);
     }
@@ -2866,8 +2905,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_sps[3*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_sps[3*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2875,13 +2915,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_place_sps(LANES, i, k, k, LANES, o_sps, Z, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2893,18 +2936,11 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_sps v;
     stage_sps_X(m, w, i, j, s, X, &v);
-    /* (sps-w_4) reciprocal vector 3 */
-    o[0*count + k] = v.sps_w_4_x;
-    o[1*count + k] = v.sps_w_4_y;
-    o[2*count + k] = v.sps_w_4_z;
-    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.sps_H_a_4_x;
-    o[4*count + k] = v.sps_H_a_4_y;
-    o[5*count + k] = v.sps_H_a_4_z;
-    o[7*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + (v.sps_H_a_4_x +
-        (v.sps_H_a_4_y + v.sps_H_a_4_z));
+    any_entries_sps_3(k, count, &v, o);
     o[6*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
+    o[7*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + (v.sps_H_a_4_x +
+        (v.sps_H_a_4_y + v.sps_H_a_4_z));
 }
 
 INLINE void H_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -2927,6 +2963,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     clear(H, NV*NU);
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         H_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -2938,17 +2975,20 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_sps[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_sps(m, LANES, i, k, k, LANES, s, X, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_place_sps(LANES, i, k, k, LANES, o_sps, H, t);
         }
@@ -3038,11 +3078,11 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
         v.sps_phi_4_in_axes3_z*v.sps_w_4_y + v.axis_y_sps_axes3_y*v.sps_c_in_axes3_y;
     const real sps_c_z = v.axis_x_sps_axes3_z*v.sps_c_in_axes3_x -
         v.sps_phi_4_in_axes3_z*v.sps_w_4_z + v.axis_y_sps_axes3_z*v.sps_c_in_axes3_y;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real sps_R_a_t = sps_c_y*v.sps_q_z - sps_c_z*v.sps_q_y;
     const real sps_R_a_t_2 = sps_c_z*v.sps_q_x - sps_c_x*v.sps_q_z;
     const real sps_R_a_t_3 = sps_c_x*v.sps_q_y - sps_c_y*v.sps_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, sps_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, sps_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, sps_c_z);  /* R_t_z_of_legs */
@@ -3052,14 +3092,7 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[5*count + k], add, sps_R_a_t_3);  /* R_a_z_of_legs */
     /* (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3 */
     o[0*count + k] = v.sps_mu_3_in_axes3_z;
-    /* (sps-w_4) reciprocal vector 3 */
-    o[1*count + k] = v.sps_w_4_x;
-    o[2*count + k] = v.sps_w_4_y;
-    o[3*count + k] = v.sps_w_4_z;
-    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-    o[4*count + k] = v.sps_H_a_4_x;
-    o[5*count + k] = v.sps_H_a_4_y;
-    o[6*count + k] = v.sps_H_a_4_z;
+    any_entries_sps_3(k, count, &v, o + 1*count);
     o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
@@ -3080,7 +3113,7 @@ INLINE void required_place_sps(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3090,7 +3123,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3119,6 +3152,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_sps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
             required_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), 0, s, X, V, A, terms_sps,
                 o_sps);
@@ -3137,9 +3171,10 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_sps[8*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -3147,13 +3182,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_sps(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_sps(LANES, i, k, k, LANES, o_sps, required, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3179,9 +3217,9 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t i, s
     o[2*count + k] = sps_y_3_extra;
     /* (sps-q_4) displacement of joint 4 */
     o[3*count + k] = v.sps_root_2;
-    o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + v.sps_root_2);
     o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
+    o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + v.sps_root_2);
 }
 
 INLINE void inverse_kinematics_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3201,6 +3239,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         inverse_kinematics_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, o_sps);
     }
@@ -3212,16 +3251,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_sps[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_sps[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_sps(m, LANES, i, k, k, LANES, s, X, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_sps(LANES, i, k, k, LANES, o_sps, q, t);
         }
@@ -3245,10 +3287,10 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t i, size_t j
     o[2*count + k] = sps_yd_3;
     /* (sps-qd_4) rate of joint 4 */
     o[3*count + k] = v.sps_S_dot_rest_in_axes3_z;
-    o[5*count + k] = (v.sps_qd_1 + v.sps_qd_2_t) + (sps_yd_3 + v.sps_S_dot_rest_in_axes3_z);
     o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
+    o[5*count + k] = (v.sps_qd_1 + v.sps_qd_2_t) + (sps_yd_3 + v.sps_S_dot_rest_in_axes3_z);
 }
 
 INLINE void joint_rates_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3269,6 +3311,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_rates_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, o_sps);
     }
@@ -3280,16 +3323,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_sps[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_sps[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_sps(m, LANES, i, k, k, LANES, s, X, V, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_sps(LANES, i, k, k, LANES, o_sps, qd, t);
         }
@@ -3316,10 +3362,10 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t i, 
     o[2*count + k] = sps_ydd_3;
     /* (sps-qdd_4) acceleration of joint 4 */
     o[3*count + k] = sps_rel_in_axes3_z;
-    o[5*count + k] = (v.sps_qdd_1 + v.sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
     o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
+    o[5*count + k] = (v.sps_qdd_1 + v.sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
 }
 
 INLINE void joint_accelerations_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3340,6 +3386,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         joint_accelerations_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
     }
@@ -3351,16 +3398,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_sps[6*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_sps[6*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_sps(m, LANES, i, k, k, LANES, s, X, V, A, o_sps);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_sps(LANES, i, k, k, LANES, o_sps, qdd, t);
         }
@@ -3429,6 +3479,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_sps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
             legs_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), s, X, V, A, o_sps);
         }
@@ -3507,6 +3558,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
+        IN_VECTORS(BESIDE(LEGS_OF_sps))
         for (size_t k = 0; k < BESIDE(LEGS_OF_sps); ++k) {
             potential_legs_sps(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps,
                 o_sps);
@@ -3554,7 +3606,7 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
     const real sps_pivot_size_3 = magnitude(v.sps_w_1_t);
     const real sps_least_pivots = lesser(lesser(R(1.25)*root(sps_pivot_size),
         R(1.25)*root(sps_pivot_size_2)), R(1.5624999999999998)*sps_pivot_size_3);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real sps_spread_t = m->b_c_in_platform_x - m->sps_platform_point_x[i];
     const real sps_spread_t_2 = m->b_c_in_platform_y - m->sps_platform_point_y[i];
     const real sps_spread_t_3 = m->b_c_in_platform_z - m->sps_platform_point_z[i];
@@ -3562,21 +3614,14 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t i, size_t j, 
         sps_spread_t_3*sps_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, sps_spread_t_4);  /* spread_sps */
-    /* (sps-w_4) reciprocal vector 3 */
-    o[0*count + k] = v.sps_w_4_x;
-    o[1*count + k] = v.sps_w_4_y;
-    o[2*count + k] = v.sps_w_4_z;
-    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.sps_H_a_4_x;
-    o[4*count + k] = v.sps_H_a_4_y;
-    o[5*count + k] = v.sps_H_a_4_z;
+    any_entries_sps_3(k, count, &v, o);
     /* (sps-G) */
     o[6*count + k] = sps_least_pivots;
-    o[8*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + ((v.sps_H_a_4_x +
-        v.sps_H_a_4_y) + (v.sps_H_a_4_z + sps_least_pivots));
     o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
         LEAST_2);
+    o[8*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + ((v.sps_H_a_4_x +
+        v.sps_H_a_4_y) + (v.sps_H_a_4_z + sps_least_pivots));
 }
 
 INLINE void condition_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3596,7 +3641,7 @@ INLINE void condition_place_sps(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_sps = sums[0*w + k];
     const real spread_ = root(spread_sps)*m->spread_t;
     /* (spread) */
@@ -3613,6 +3658,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_sps))
     for (size_t k = 0; k < LEGS(LEGS_OF_sps); ++k) {
         condition_legs_sps(m, 1, k, 0, k, LEGS(LEGS_OF_sps), 0, s, X, terms_sps, o_sps);
     }
@@ -3643,8 +3689,8 @@ int stewart_sps_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3668,8 +3714,8 @@ int stewart_sps_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3692,8 +3738,8 @@ int stewart_sps_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3717,8 +3763,8 @@ int stewart_sps_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3743,8 +3789,8 @@ int stewart_sps_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3771,8 +3817,8 @@ int stewart_sps_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3806,8 +3852,8 @@ int stewart_sps_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3821,6 +3867,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -4023,18 +4070,20 @@ int stewart_sps_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], extend_1[12*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], extend_1[12*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 12*LANES; ++i) {
         extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - extend_1[i];
     }
@@ -4073,10 +4122,10 @@ int stewart_sps_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[12*LANES], add_1[NV*LANES],
-        subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, extend_1[12*LANES],
+        add_1[NV*LANES], subtract_1[NV*LANES], A[NV*LANES], work[NV*PADDED(NV)*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4084,12 +4133,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 12*LANES; ++i) {
         extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + extend_1[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }
@@ -4162,38 +4214,44 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
     static const size_t places_clear_at_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_take_columns_1[] = {6, 7, 8, 9, 10, 11};
     static const size_t places_completed[] = {6, 7, 8, 9, 10, 11};
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], clear_at_1[NV*LANES],
-        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
-        extend_1[12*LANES], subtract_1[NV*LANES], take_columns_1[6*NV*LANES] = {0},
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        clear_at_1[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0},
+        add_1[NV*LANES], extend_1[12*LANES], subtract_1[NV*LANES], take_columns_1[6*NV*LANES] = {0},
         negative_1[6*LANES], solve_1[6*LANES], completed[NV*LANES];
-    status_flags why;
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         clear_at_1[i] = A[i];
     }
     clear_at(6, LANES, places_clear_at_1, clear_at_1);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NV, 1, LANES, M, clear_at_1, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + Z[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 12*LANES; ++i) {
         extend_1[i] = i < NW*LANES ? wrench[i] : 0;
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - extend_1[i];
     }
     take_columns(NV, NV, 6, LANES, places_take_columns_1, M, take_columns_1);
     const real *const take_1 = take_columns_1 + 36*LANES;
     const real *const subtract_1_from_6 = subtract_1 + 6*LANES;
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 6*LANES; ++i) {
         negative_1[i] = -subtract_1_from_6[i];
     }
     eliminate_6(LANES, 6, order_solve_1, sizes_solve_1, take_1, negative_1, solve_1, why.singular, why.total);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         completed[i] = clear_at_1[i];
     }

@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && TRICEPT_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -165,6 +190,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -191,6 +217,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -250,19 +277,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -310,10 +340,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -365,6 +397,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -710,13 +743,6 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
         const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
         const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_acc_3_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_acc_3_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -773,11 +799,17 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
         /* (potential) potential energy */
-        const real ups_potential_t = ups_base_frame_xx*ups_base_point_x +
+        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx;
+        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy;
+        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz;
+        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_2 = ups_base_frame_xy*ups_base_point_x +
+        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
+        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
         KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
         KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
@@ -788,9 +820,6 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_acc_3_t);
-        KEEP_OF_LEG(ups_acc_3_t_2);
-        KEEP_OF_LEG(ups_acc_3_t_3);
         KEEP_OF_LEG(ups_base_frame_xx);
         KEEP_OF_LEG(ups_base_frame_xy);
         KEEP_OF_LEG(ups_base_frame_xz);
@@ -822,6 +851,9 @@ int tricept_prepare(const tricept_params *params, tricept_model *model)
         KEEP_OF_LEG(ups_potential_t);
         KEEP_OF_LEG(ups_potential_t_2);
         KEEP_OF_LEG(ups_potential_t_3);
+        KEEP_OF_LEG(ups_potential_t_4);
+        KEEP_OF_LEG(ups_potential_t_5);
+        KEEP_OF_LEG(ups_potential_t_6);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_in_platform_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_in_platform_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -1130,6 +1162,7 @@ APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, rea
         real *restrict other)
 {
     for (size_t j = p; j <= n; ++j) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
             pivot[j*LANES + k] = best[k] == i ? up : down;
@@ -1143,17 +1176,20 @@ INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
     real most[LANES], best[LANES], any = 0;
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
         best[k] = 0;
     }
     for (size_t i = p + 1; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real size = magnitude(a[i*row + p*LANES + k]);
             best[k] = size > most[k] ? (real)i : best[k];
             most[k] = larger(size, most[k]);
         }
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         any += best[k];
     }
@@ -1171,14 +1207,17 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             size[k] = 1/size[k];
         }
         for (size_t j = 0; j <= n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + j*LANES + k] *= size[k];
             }
@@ -1187,6 +1226,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t p = 0; p < n; ++p) {
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
@@ -1194,10 +1234,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         for (size_t i = p + 1; i < n; ++i) {
             real *const other = a + i*row;
             real factor[LANES];
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 factor[k] = other[p*LANES + k]*x[p*LANES + k];
             }
             for (size_t j = p + 1; j <= n; ++j) {
+                SHORT_IN_VECTORS
                 for (size_t k = 0; k < LANES; ++k) {
                     other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
                 }
@@ -1205,10 +1247,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = n; p-- > 0;) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             x[p*LANES + k] *= a[p*row + n*LANES + k];
         }
         for (size_t i = 0; i < p; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
             }
@@ -1493,6 +1537,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1507,6 +1552,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1518,6 +1564,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1527,6 +1574,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1553,6 +1601,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1583,6 +1632,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1627,6 +1677,7 @@ INLINE void saddle(size_t n, size_t p, size_t stride, size_t w, const real *a, c
     }
     for (size_t j = 0; j < p; ++j) {
         for (size_t i = 0; i < n; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 x[(n + j)*row + i*w + k] = b[(i*p + j)*w + k];
             }
@@ -1927,8 +1978,8 @@ typedef struct {
         tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8, tube_M_ta_t_9,
         tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t_8, tube_M_aa_t_9, tube_M_aa_t_10,
         tube_M_aa_t_11, tube_M_aa_t_12, tube_M_aa_t_13, tube_U_x, tube_U_y, tube_U_z, tube_Z_a_t,
-        tube_Z_a_t_2, tube_Z_a_t_3, tube_gamma_c1, tube_gamma_c2, tube_gamma_c3, tube_c_t, tube_c_t_2,
-        tube_c_t_3, tube_c_m_x, tube_c_m_y, tube_c_m_z;
+        tube_Z_a_t_2, tube_Z_a_t_3, tube_c_t, tube_c_t_2, tube_c_t_3, tube_c_m_x, tube_c_m_y,
+        tube_c_m_z, tube_gamma_c1, tube_gamma_c2, tube_gamma_c3;
 } values_tube;
 
 INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -2779,33 +2830,6 @@ INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
         v->axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z;
 }
 
-INLINE void stage_tube_constraint_bias_dynamics(values_tube *v)
-{
-    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-    const real tube_bias_in_axes2_y = v->tube_bias_t_4 + v->tube_bias_t_2;
-    const real tube_bias_in_axes2_z = -v->tube_bias_t_5 - 2*v->tube_bias_t;
-    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real tube_rel_o_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_u_1_x +
-        v->axis_y_tube_axes2_y*v->tube_u_1_y + v->axis_y_tube_axes2_z*v->tube_u_1_z -
-        tube_bias_in_axes2_y;
-    const real tube_rel_o_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_u_1_x +
-        v->axis_z_tube_axes2_y*v->tube_u_1_y + v->axis_z_tube_axes2_z*v->tube_u_1_z -
-        tube_bias_in_axes2_z;
-    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    v->tube_gamma_c1 = tube_rel_o_in_axes2_y - v->tube_m1_c1_t*v->tube_nu_1 -
-        v->tube_m3_c1_t*v->tube_nu_3;
-    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-       */
-    v->tube_gamma_c2 = tube_rel_o_in_axes2_z + v->tube_m3_c2*v->tube_nu_3 -
-        v->tube_m1_c2_t*v->tube_nu_1;
-    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-       */
-    v->tube_gamma_c3 = v->inv_tube_size_c3*v->tube_nu_2 + v->tube_mu1_c3*v->tube_nu_1 -
-        v->tube_mu3_c3_t*v->tube_nu_3;
-}
-
 INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v)
 {
     /* (tube-alpha_1) angular acceleration of link 1 */
@@ -2901,22 +2925,49 @@ INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v
         v->axis_z_tube_axes2_z*tube_G_m_in_axes2_z;
 }
 
+INLINE void stage_tube_constraint_bias_dynamics(values_tube *v)
+{
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_in_axes2_y = v->tube_bias_t_4 + v->tube_bias_t_2;
+    const real tube_bias_in_axes2_z = -v->tube_bias_t_5 - 2*v->tube_bias_t;
+    /* (tube-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real tube_rel_o_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_u_1_x +
+        v->axis_y_tube_axes2_y*v->tube_u_1_y + v->axis_y_tube_axes2_z*v->tube_u_1_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_o_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_u_1_x +
+        v->axis_z_tube_axes2_y*v->tube_u_1_y + v->axis_z_tube_axes2_z*v->tube_u_1_z -
+        tube_bias_in_axes2_z;
+    /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c1 = tube_rel_o_in_axes2_y - v->tube_m1_c1_t*v->tube_nu_1 -
+        v->tube_m3_c1_t*v->tube_nu_3;
+    /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c2 = tube_rel_o_in_axes2_z + v->tube_m3_c2*v->tube_nu_3 -
+        v->tube_m1_c2_t*v->tube_nu_1;
+    /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->tube_gamma_c3 = v->inv_tube_size_c3*v->tube_nu_2 + v->tube_mu1_c3*v->tube_nu_1 -
+        v->tube_mu3_c3_t*v->tube_nu_3;
+}
+
 typedef struct {
-    real ups_q_x, ups_q_y, ups_q_z, ups_root_1_t, ups_root_1, inv_ups_root_1, ups_c_1, ups_s_1,
-        ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x,
-        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
-        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
-        ups_g_in_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_mu_2_t_5, ups_mu_2_t_6,
-        ups_mu_2_t_7, ups_H_a_3_x, ups_H_a_3_y, ups_H_a_3_z, ups_S_dot_t, ups_S_dot_t_2,
-        ups_S_dot_t_3, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_W_2_in_axes2_yz,
+    real ups_q_x, ups_q_y, ups_q_z, ups_S_x, ups_S_y, ups_S_z, ups_S_in_turn1_z, ups_root_1_t_4,
+        ups_root_1, inv_ups_root_1, ups_q_3_t, ups_q_3_t_2, ups_q_3, inv_ups_q_3, ups_c_2,
+        ups_e_1_in_axes2_x, axis_x_ups_axes2_x, axis_x_ups_axes2_y, axis_x_ups_axes2_z,
+        axis_z_ups_axes2_x, axis_z_ups_axes2_y, axis_z_ups_axes2_z, axis_y_ups_axes2_x,
+        axis_y_ups_axes2_y, axis_y_ups_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_g_in_axes2_z,
+        ups_mu_2_t_5, ups_mu_2_t_6, ups_mu_2_t_7, ups_H_a_3_x, ups_H_a_3_y, ups_H_a_3_z, ups_S_dot_t,
+        ups_S_dot_t_2, ups_S_dot_t_3, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_W_2_in_axes2_yz,
         ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
         ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
         ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
-        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz,
-        ups_Q_yz, ups_M_ta_t, ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7,
-        ups_M_ta_t_8, ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4,
-        ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
-        ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
+        ups_Z_a_t_3, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz, ups_Q_yz, ups_M_ta_t,
+        ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7, ups_M_ta_t_8,
+        ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5,
+        ups_M_aa_t_6, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -2939,44 +2990,42 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->ups_q_z = R_zx*m->ups_platform_point_x[i] + R_zy*m->ups_platform_point_y[i] +
         R_zz*m->ups_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x - m->ups_base_point_x[i] + v->ups_q_x;
+    v->ups_S_x = t_x - m->ups_base_point_x[i] + v->ups_q_x;
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y - m->ups_base_point_y[i] + v->ups_q_y;
+    v->ups_S_y = t_y - m->ups_base_point_y[i] + v->ups_q_y;
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z - m->ups_base_point_z[i] + v->ups_q_z;
-    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
-        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
-        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
-        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
+    v->ups_S_z = t_z - m->ups_base_point_z[i] + v->ups_q_z;
+    v->ups_S_in_turn1_z = v->ups_S_x*m->ups_base_frame_xz[i] +
+        v->ups_S_y*m->ups_base_frame_yz[i] + v->ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    v->ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y;
-    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t);
-    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real ups_root_1_t = v->ups_S_z*m->ups_base_frame_yz[i] -
+        v->ups_S_y*m->ups_base_frame_zz[i];
+    const real ups_root_1_t_2 = v->ups_S_x*m->ups_base_frame_zz[i] -
+        v->ups_S_z*m->ups_base_frame_xz[i];
+    const real ups_root_1_t_3 = v->ups_S_y*m->ups_base_frame_xz[i] -
+        v->ups_S_x*m->ups_base_frame_yz[i];
+    v->ups_root_1_t_4 = ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 +
+        ups_root_1_t_3*ups_root_1_t_3;
+    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t_4);
+    /* (ups-q_1) displacement of joint 1 */
     v->inv_ups_root_1 = 1/v->ups_root_1;
-    v->ups_c_1 = v->inv_ups_root_1*ups_S_in_turn1_x;
-    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    v->ups_s_1 = v->inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
-    v->ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + v->ups_root_1_t;
-    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t);
+    v->ups_q_3_t = v->ups_S_in_turn1_z*v->ups_S_in_turn1_z;
+    v->ups_q_3_t_2 = v->ups_q_3_t + v->ups_root_1_t_4;
+    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t_2);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
     v->inv_ups_q_3 = 1/v->ups_q_3;
     v->ups_c_2 = v->inv_ups_q_3*v->ups_root_1;
     /* (ups-q_2) displacement of joint 2 */
-    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*ups_S_in_turn1_z;
+    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*v->ups_S_in_turn1_z;
     /* (ups-S_dot) velocity of the connection point */
-    v->axis_x_ups_axes2_x = v->inv_ups_q_3*ups_S_x;
-    v->axis_x_ups_axes2_y = v->inv_ups_q_3*ups_S_y;
-    v->axis_x_ups_axes2_z = v->inv_ups_q_3*ups_S_z;
+    v->axis_x_ups_axes2_x = v->inv_ups_q_3*v->ups_S_x;
+    v->axis_x_ups_axes2_y = v->inv_ups_q_3*v->ups_S_y;
+    v->axis_x_ups_axes2_z = v->inv_ups_q_3*v->ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    v->axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*v->ups_c_1 -
-        m->ups_base_frame_xx[i]*v->ups_s_1;
-    v->axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*v->ups_c_1 -
-        m->ups_base_frame_yx[i]*v->ups_s_1;
-    v->axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*v->ups_c_1 -
-        m->ups_base_frame_zx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_x = v->inv_ups_root_1*ups_root_1_t;
+    v->axis_z_ups_axes2_y = v->inv_ups_root_1*ups_root_1_t_2;
+    v->axis_z_ups_axes2_z = v->inv_ups_root_1*ups_root_1_t_3;
     /* (ups-qd_2) rate of joint 2 */
     v->axis_y_ups_axes2_x = v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_y -
         v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_z;
@@ -2985,12 +3034,12 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->axis_y_ups_axes2_z = v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_x -
         v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_y;
     /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    v->ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*v->ups_c_1 - m->ups_acc_3_t[i]*v->ups_s_1;
-    v->ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        ups_acc_3_t_4*v->ups_c_2;
-    v->ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
+    v->ups_g_in_axes2_x = v->axis_x_ups_axes2_x*m->gravity_x +
+        v->axis_x_ups_axes2_y*m->gravity_y + v->axis_x_ups_axes2_z*m->gravity_z;
+    v->ups_g_in_axes2_y = v->axis_y_ups_axes2_x*m->gravity_x +
+        v->axis_y_ups_axes2_y*m->gravity_y + v->axis_y_ups_axes2_z*m->gravity_z;
+    v->ups_g_in_axes2_z = v->axis_z_ups_axes2_x*m->gravity_x +
+        v->axis_z_ups_axes2_y*m->gravity_y + v->axis_z_ups_axes2_z*m->gravity_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->ups_mu_2_t_5 = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] -
         v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i];
@@ -3053,7 +3102,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_mu_2_t_4 = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_t - ups_W_2_t);
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_W_2_t_2 + ups_mu_2_t);
+    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_mu_2_t + ups_W_2_t_2);
     v->ups_c_t_2 = m->ups_h_3_in_spec2_y[i]*(ups_W_2_t + ups_mu_2_t);
 }
 
@@ -3093,6 +3142,90 @@ INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
+}
+
+INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
+{
+    /* (ups-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
+    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
+    const real ups_u_1_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
+        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_t = v->axis_y_ups_axes2_x*ups_u_1_x;
+    const real ups_u_1_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
+    const real ups_u_1_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
+    const real ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3;
+    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
+        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
+    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
+       */
+    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
+    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
+    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
+    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
+    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
+    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
+    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
+        v->ups_qdd_2_t);
+    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
+       */
+    const real ups_phi_3_o_in_axes2_x = v->ups_phi_3_t -
+        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
+        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
+    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
+       reference points */
+    const real ups_mu_2_o_in_axes2_x = v->ups_mu_2_t_2 -
+        m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_z - v->ups_mu_2_t_5 -
+        m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_y +
+        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
+        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_mu_2_o_in_axes2_y = m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_x -
+        m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_z - v->ups_mu_2_t_6 - v->ups_mu_2_t_3 -
+        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
+        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
+        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_mu_2_o_in_axes2_z = m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_x +
+        m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_y - v->ups_mu_2_t_7 + v->ups_mu_2_t_4 +
+        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] -
+        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
+        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
+        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
+    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
+       connection point */
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
+        v->ups_c_t - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
+    const real ups_c_o_in_axes2_z = v->ups_c_t_2 +
+        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
+        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
+    /* (ups-U) velocity and gravity terms of the leg force */
+    v->ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+    v->ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+    v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    v->ups_Z_a_t = v->ups_U_z*v->ups_q_y - v->ups_U_y*v->ups_q_z;
+    v->ups_Z_a_t_2 = v->ups_U_x*v->ups_q_z - v->ups_U_z*v->ups_q_x;
+    v->ups_Z_a_t_3 = v->ups_U_y*v->ups_q_x - v->ups_U_x*v->ups_q_y;
 }
 
 INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
@@ -3165,90 +3298,6 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     v->ups_M_aa_t_6 = v->ups_M_ta_t_6*v->ups_q_x - v->ups_M_ta_t_2*v->ups_q_y;
 }
 
-INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
-    values_ups *v)
-{
-    /* (ups-u_1) centripetal acceleration of the connection point */
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
-    const real omega_x = V[3*w + j];
-    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
-    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
-    const real ups_u_1_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
-        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z;
-    const real ups_u_1_t = v->axis_y_ups_axes2_x*ups_u_1_x;
-    const real ups_u_1_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
-    const real ups_u_1_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
-    const real ups_u_1_in_axes2_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3;
-    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
-        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
-    /* (ups-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
-       */
-    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
-    /* (ups-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
-    /* (ups-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
-    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
-    /* (ups-alpha_2_o) remainder of: angular acceleration of link 2 */
-    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
-    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
-        v->ups_qdd_2_t);
-    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-    /* (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
-       */
-    const real ups_phi_3_o_in_axes2_x = v->ups_phi_3_t -
-        ups_B_2_o_in_axes2_xy*m->ups_h_3_in_spec2_z[i] +
-        ups_alpha_1_o_in_axes2_y*m->ups_h_3_in_spec2_y[i];
-    /* (ups-mu_2_o) remainder of: inertia moment of the links that turn with link 2, about their
-       reference points */
-    const real ups_mu_2_o_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
-        m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_z -
-        m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_y +
-        ups_B_2_o_in_axes2_yx*m->ups_J_group_2_in_axes2_xz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_x +
-        ups_B_2_o_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
-    const real ups_mu_2_o_in_axes2_y = m->ups_h_3_in_spec2_y[i]*ups_u_1_in_axes2_x -
-        v->ups_mu_2_t_6 - m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_z - v->ups_mu_2_t_3 -
-        ups_B_2_o_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
-        m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_o_in_axes2_y +
-        ups_B_2_o_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_o_in_axes2_z = m->ups_h_3_in_spec2_z[i]*ups_u_1_in_axes2_x -
-        v->ups_mu_2_t_7 + m->ups_h_3_in_spec2_x[i]*ups_u_1_in_axes2_y + v->ups_mu_2_t_4 +
-        ups_B_2_o_in_axes2_yx*m->ups_Sigma_2_in_axes2_xx[i] -
-        ups_B_2_o_in_axes2_xy*m->ups_Sigma_2_in_axes2_yy[i] +
-        m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_o_in_axes2_x +
-        m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_o_in_axes2_y;
-    /* (ups-c_o) remainder of: leg force on the platform without actuation and without the mass at the
-       connection point */
-    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->ups_c_t - ups_B_2_o_in_axes2_yx*m->ups_h_3_in_spec2_x[i] -
-        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z;
-    const real ups_c_o_in_axes2_z = v->ups_c_t_2 +
-        ups_B_2_o_in_axes2_zy*m->ups_h_3_in_spec2_z[i] -
-        ups_B_2_o_in_axes2_zx*m->ups_h_3_in_spec2_x[i] +
-        v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
-        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x);
-    /* (ups-U) velocity and gravity terms of the leg force */
-    v->ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-    v->ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-    v->ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-    /* (Z_a) rotational part of Z */
-    v->ups_Z_a_t = v->ups_U_z*v->ups_q_y - v->ups_U_y*v->ups_q_z;
-    v->ups_Z_a_t_2 = v->ups_U_x*v->ups_q_z - v->ups_U_z*v->ups_q_x;
-    v->ups_Z_a_t_3 = v->ups_U_y*v->ups_q_x - v->ups_U_x*v->ups_q_y;
-}
-
 INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
 {
     /* (ups-S_ddot) acceleration of the connection point */
@@ -3267,21 +3316,21 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
-        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
         m->ups_J_group_2_in_axes2_xz[i]*v->ups_qdd_2_t_2 +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_x +
         ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
         ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
     const real ups_mu_2_in_axes2_y = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->ups_mu_2_t_6 - v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_3
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_6 - v->ups_mu_2_t_3
         + m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
         ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
         ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v->ups_mu_2_t_7 + v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] + v->ups_mu_2_t_4
+    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_7 + v->ups_mu_2_t_4
         + m->ups_Sigma_2_in_axes2_xx[i]*v->ups_qdd_2_t_2 +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
@@ -3334,6 +3383,84 @@ INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
     t->total[k] += o[7*count + at];
 }
 
+INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->ups_Q_t_10);  /* M_tt_t */
+    gather(&terms[1*count + k], add, v->ups_Q_t_12);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, v->ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_ups_zz */
+    gather(&terms[8*count + k], add, v->ups_M_ta_t);  /* M_ta_t_2 */
+    gather(&terms[9*count + k], add, v->ups_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->ups_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->ups_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->ups_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->ups_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->ups_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->ups_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->ups_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->ups_M_aa_t_4);  /* M_aa_t */
+    gather(&terms[18*count + k], add, v->ups_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->ups_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->ups_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->ups_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->ups_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->ups_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_ups(size_t k, size_t count, const values_ups *v, real *o)
+{
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v->axis_x_ups_axes2_x;
+    o[1*count + k] = v->axis_x_ups_axes2_y;
+    o[2*count + k] = v->axis_x_ups_axes2_z;
+    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->ups_H_a_3_x;
+    o[4*count + k] = v->ups_H_a_3_y;
+    o[5*count + k] = v->ups_H_a_3_z;
+}
+
+INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->ups_root_1_t_4) > LEAST_1) + UNLESS(magnitude(v->ups_q_3_t_2) >
+        LEAST_1) + UNLESS(magnitude(v->ups_root_1) > LEAST_2) + UNLESS(magnitude(v->ups_q_3) >
+        LEAST_2);
+}
+
+INLINE void any_sums_tube(size_t k, size_t count, int add, const values_tube *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->tube_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->tube_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->tube_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->tube_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->tube_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->tube_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_singular_tube(size_t k, const values_tube *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->tube_root_1_t) > LEAST_3) + UNLESS(magnitude(v->tube_q_3_t) >
+        LEAST_3) + UNLESS(magnitude(v->tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(v->tube_size_c3) > LEAST_4) + UNLESS(magnitude(v->tube_w_1_t_3) >
+        LEAST_4) + UNLESS(magnitude(v->tube_qd_1_t) > LEAST_4);
+}
+
 INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
@@ -3353,6 +3480,45 @@ INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, v
     s[7*w + k] = v->R_zy;
     s[8*w + k] = v->R_zz;
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
+}
+
+INLINE void any_entries_tube(size_t k, size_t count, const values_tube *v, real *o)
+{
+    /* (tube-n_c1) unit force of the constraint wrench */
+    o[0*count + k] = v->axis_y_tube_axes2_x;
+    o[1*count + k] = v->axis_y_tube_axes2_y;
+    o[2*count + k] = v->axis_y_tube_axes2_z;
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->tube_Hk_a_1_x;
+    o[4*count + k] = v->tube_Hk_a_1_y;
+    o[5*count + k] = v->tube_Hk_a_1_z;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    o[6*count + k] = v->axis_z_tube_axes2_x;
+    o[7*count + k] = v->axis_z_tube_axes2_y;
+    o[8*count + k] = v->axis_z_tube_axes2_z;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    o[9*count + k] = v->tube_Hk_a_2_x;
+    o[10*count + k] = v->tube_Hk_a_2_y;
+    o[11*count + k] = v->tube_Hk_a_2_z;
+    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+    o[12*count + k] = v->tube_mu_c3_x;
+    o[13*count + k] = v->tube_mu_c3_y;
+    o[14*count + k] = v->tube_mu_c3_z;
+}
+
+INLINE void any_singular_tube_2(size_t k, const values_tube *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->tube_root_1_t) > LEAST_3) + UNLESS(magnitude(v->tube_q_3_t) >
+        LEAST_3) + UNLESS(magnitude(v->tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(v->tube_size_c3) > LEAST_4);
+}
+
+INLINE void any_singular_tube_3(size_t k, const values_tube *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->tube_root_1_t) > LEAST_3) + UNLESS(magnitude(v->tube_q_3_t) >
+        LEAST_3) + UNLESS(magnitude(v->tube_f_c1_t) > LEAST_4) +
+        UNLESS(magnitude(v->tube_size_c3) > LEAST_4) + UNLESS(magnitude(v->tube_qd_1_t) >
+        LEAST_4);
 }
 
 INLINE void any_before_3(const prepared *m, size_t w, size_t k, const real *X, const real *V,
@@ -3403,52 +3569,14 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_t */
-    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_ups_zz */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_t_2 */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_t */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ups_H_a_3_x;
-    o[4*count + k] = v.ups_H_a_3_y;
-    o[5*count + k] = v.ups_H_a_3_z;
+    stage_ups_M_dynamics(m, i, &v);
+    any_sums_ups(k, count, add, &v, terms);
+    any_sums_ups_2(k, count, add, &v, terms + 20*count);
+    any_entries_ups(k, count, &v, o);
+    any_singular_ups(k, &v, o + 6*count);
     o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -3484,14 +3612,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[32*count + k], add, v.tube_M_aa_t_11);  /* M_aa_yy_of_legs */
     gather(&terms[18*count + k], add, v.tube_M_aa_t_12);  /* M_aa_yz_of_legs */
     gather(&terms[19*count + k], add, v.tube_M_aa_t_13);  /* M_aa_zz_of_legs */
-    /* (Z_t) */
-    gather(&terms[20*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[23*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
+    any_sums_tube(k, count, add, &v, terms + 20*count);
     /* (tube-n_c1) unit force of the constraint wrench */
     o[0*count + k] = v.axis_y_tube_axes2_x;
     o[1*count + k] = v.axis_y_tube_axes2_y;
@@ -3521,16 +3642,13 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
        */
     o[17*count + k] = v.tube_gamma_c3;
+    any_singular_tube(k, &v, o + 18*count);
     o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
         (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
         (v.tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
         (((v.axis_z_tube_axes2_z + v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) +
         ((v.tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
         v.tube_gamma_c3))));
-    o[18*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
-        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3561,7 +3679,7 @@ INLINE void dynamics_place_tube(size_t w, size_t k, size_t at, size_t count, con
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_t = sums[0*w + k];
     const real M_tt_xx_of_legs = sums[26*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
@@ -3572,7 +3690,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_t = sums[6*w + k];
     const real M_ta_ups_zz = sums[7*w + k];
     const real M_ta_xx_of_legs = sums[28*w + k];
@@ -3597,7 +3715,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz_of_legs = sums[31*w + k];
     const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -3617,7 +3735,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -3627,7 +3745,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -3701,9 +3819,11 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     clear(Hk, NV*NC);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         dynamics_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
     }
@@ -3729,10 +3849,11 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[33*LANES], sums[33*LANES];
-    real o_ups[8*LANES];
-    real o_tube[20*LANES];
+    ALIGNED real s[33*LANES], sums[33*LANES];
+    ALIGNED real o_ups[8*LANES];
+    ALIGNED real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -3740,21 +3861,26 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 33*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_tube(LANES, k, k, LANES, o_tube, Hk, constraint_bias, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -3767,32 +3893,8 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_t_10);  /* M_tt_t */
-    gather(&terms[1*count + k], add, v.ups_Q_t_12);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.ups_M_ta_t_5);  /* M_ta_t */
-    gather(&terms[7*count + k], add, v.ups_M_ta_t_9);  /* M_ta_ups_zz */
-    gather(&terms[8*count + k], add, v.ups_M_ta_t);  /* M_ta_t_2 */
-    gather(&terms[9*count + k], add, v.ups_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.ups_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.ups_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.ups_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.ups_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.ups_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.ups_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.ups_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.ups_M_aa_t_4);  /* M_aa_t */
-    gather(&terms[18*count + k], add, v.ups_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_sums_ups(k, count, add, &v, terms);
+    any_singular_ups(k, &v, o);
 }
 
 INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -3834,7 +3936,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_t = sums[0*w + k];
     const real M_tt_xx_of_legs = sums[20*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
@@ -3845,7 +3947,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_t = sums[6*w + k];
     const real M_ta_ups_zz = sums[7*w + k];
     const real M_ta_xx_of_legs = sums[22*w + k];
@@ -3870,7 +3972,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz_of_legs = sums[25*w + k];
     const real M_ta_zz = M_ta_ups_zz + M_ta_zz_of_legs;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -3944,9 +4046,11 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         M_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
     }
@@ -3970,30 +4074,36 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[27*LANES];
-    real o_ups[LANES];
-    real o_tube[LANES];
+    ALIGNED real s[27*LANES], sums[27*LANES];
+    ALIGNED real o_ups[LANES];
+    ALIGNED real o_tube[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, sums, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_tube, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -4018,17 +4128,8 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ups_X(m, w, i, j, s, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_Z_dynamics(m, w, i, j, V, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_sums_ups_2(k, count, add, &v, terms);
+    any_singular_ups(k, &v, o);
 }
 
 INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t count,
@@ -4038,23 +4139,13 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_tube_X(m, w, i, j, s, X, &v);
     stage_tube_V_X(m, w, i, j, V, &v);
     stage_tube_Z_dynamics(m, i, &v);
-    /* (Z_t) */
-    gather(&terms[0*count + k], add, v.tube_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.tube_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.tube_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) */
-    gather(&terms[3*count + k], add, v.tube_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.tube_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.tube_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
-        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
+    any_sums_tube(k, count, add, &v, terms);
+    any_singular_tube(k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -4064,7 +4155,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -4092,9 +4183,11 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_tube[6*LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, V, terms_ups, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         Z_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, V, terms_tube, o_tube);
     }
@@ -4119,9 +4212,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_ups[LANES];
-    real o_tube[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_ups[LANES];
+    ALIGNED real o_tube[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -4129,21 +4223,26 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_tube, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -4155,18 +4254,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ups_H_a_3_x;
-    o[4*count + k] = v.ups_H_a_3_y;
-    o[5*count + k] = v.ups_H_a_3_z;
+    any_entries_ups(k, count, &v, o);
+    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -4175,6 +4267,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
@@ -4186,16 +4279,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_ups[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ups[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
@@ -4208,34 +4304,13 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t
 {
     values_tube v;
     stage_tube_X(m, w, i, j, s, X, &v);
-    /* (tube-n_c1) unit force of the constraint wrench */
-    o[0*count + k] = v.axis_y_tube_axes2_x;
-    o[1*count + k] = v.axis_y_tube_axes2_y;
-    o[2*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.tube_Hk_a_1_x;
-    o[4*count + k] = v.tube_Hk_a_1_y;
-    o[5*count + k] = v.tube_Hk_a_1_z;
-    /* (tube-n_c2) unit force of the constraint wrench */
-    o[6*count + k] = v.axis_z_tube_axes2_x;
-    o[7*count + k] = v.axis_z_tube_axes2_y;
-    o[8*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.tube_Hk_a_2_x;
-    o[10*count + k] = v.tube_Hk_a_2_y;
-    o[11*count + k] = v.tube_Hk_a_2_z;
-    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-    o[12*count + k] = v.tube_mu_c3_x;
-    o[13*count + k] = v.tube_mu_c3_y;
-    o[14*count + k] = v.tube_mu_c3_z;
+    any_entries_tube(k, count, &v, o);
+    any_singular_tube_2(k, &v, o + 15*count);
     o[16*count + k] = ((v.axis_y_tube_axes2_x + (v.axis_y_tube_axes2_y +
         v.axis_y_tube_axes2_z)) + ((v.tube_Hk_a_1_x + v.tube_Hk_a_1_y) + (v.tube_Hk_a_1_z +
         v.axis_z_tube_axes2_x))) + (((v.axis_z_tube_axes2_y + v.axis_z_tube_axes2_z) +
         (v.tube_Hk_a_2_x + v.tube_Hk_a_2_y)) + ((v.tube_Hk_a_2_z + v.tube_mu_c3_x) +
         (v.tube_mu_c3_y + v.tube_mu_c3_z)));
-    o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4);
 }
 
 INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real *Hk,
@@ -4267,6 +4342,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
     clear(Hk, NV*NC);
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         Hk_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -4278,17 +4354,20 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    real s[18*LANES];
-    real o_tube[17*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_place_tube(LANES, k, k, LANES, o_tube, Hk, t);
         }
@@ -4312,11 +4391,8 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t i, siz
     /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
        */
     o[2*count + k] = v.tube_gamma_c3;
+    any_singular_tube_3(k, &v, o + 3*count);
     o[4*count + k] = v.tube_gamma_c1 + (v.tube_gamma_c2 + v.tube_gamma_c3);
-    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
-        LEAST_4);
 }
 
 INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -4336,6 +4412,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraint_bias_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
     }
@@ -4347,16 +4424,19 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_tube[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_tube[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_legs_tube(m, LANES, i, k, k, LANES, s, X, V, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_place_tube(LANES, k, k, LANES, o_tube, constraint_bias, t);
         }
@@ -4446,11 +4526,11 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
     const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
     const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_t */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_t_2 */
     gather(&terms[2*count + k], add, ups_c_z);  /* R_t_t_3 */
@@ -4458,17 +4538,8 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, ups_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ups_H_a_3_x;
-    o[4*count + k] = v.ups_H_a_3_y;
-    o[5*count + k] = v.ups_H_a_3_z;
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_entries_ups(k, count, &v, o);
+    any_singular_ups(k, &v, o + 6*count);
 }
 
 INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -4505,30 +4576,8 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, tube_R_a_t_3);  /* R_a_z_of_legs */
-    /* (tube-n_c1) unit force of the constraint wrench */
-    o[0*count + k] = v.axis_y_tube_axes2_x;
-    o[1*count + k] = v.axis_y_tube_axes2_y;
-    o[2*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.tube_Hk_a_1_x;
-    o[4*count + k] = v.tube_Hk_a_1_y;
-    o[5*count + k] = v.tube_Hk_a_1_z;
-    /* (tube-n_c2) unit force of the constraint wrench */
-    o[6*count + k] = v.axis_z_tube_axes2_x;
-    o[7*count + k] = v.axis_z_tube_axes2_y;
-    o[8*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.tube_Hk_a_2_x;
-    o[10*count + k] = v.tube_Hk_a_2_y;
-    o[11*count + k] = v.tube_Hk_a_2_z;
-    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-    o[12*count + k] = v.tube_mu_c3_x;
-    o[13*count + k] = v.tube_mu_c3_y;
-    o[14*count + k] = v.tube_mu_c3_z;
-    o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
-        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
+    any_entries_tube(k, count, &v, o);
+    any_singular_tube(k, &v, o + 15*count);
 }
 
 INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -4554,7 +4603,7 @@ INLINE void required_place_tube(size_t w, size_t k, size_t at, size_t count, con
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_t = sums[0*w + k];
     const real R_t_x_of_legs = sums[6*w + k];
     const real f_p_x = s[18*w + k];
@@ -4567,7 +4616,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[8*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_t_3 + R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -4597,12 +4646,14 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, V, A, terms_ups,
                 o_ups);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        IN_VECTORS(BESIDE(LEGS_OF_tube))
         for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
             required_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), 0, s, X, V, A,
                 terms_tube, o_tube);
@@ -4629,10 +4680,11 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[24*LANES], sums[9*LANES];
-    real o_ups[7*LANES];
-    real o_tube[16*LANES];
+    ALIGNED real s[24*LANES], sums[9*LANES];
+    ALIGNED real o_ups[7*LANES];
+    ALIGNED real o_tube[16*LANES];
     clear(Hk, NV*NC*LANES);
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -4640,21 +4692,26 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_ups(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_tube(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_tube(LANES, k, k, LANES, o_tube, Hk, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -4666,8 +4723,14 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-S) from the base point to the connection point */
+    const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
+        v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
+        v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
     /* (ups-q_1) displacement of joint 1 */
-    const real ups_q_1 = angle(v.ups_s_1, v.ups_c_1);
+    const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
+        v.inv_ups_root_1*ups_S_in_turn1_x);
     /* (ups-q_2) displacement of joint 2 */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
@@ -4676,9 +4739,9 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = ups_q_2;
     /* (ups-q_3) displacement of joint 3 */
     o[2*count + k] = v.ups_q_3;
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
     o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
 INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -4706,9 +4769,9 @@ INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = tube_q_2;
     /* (tube-q_3) displacement of joint 3 */
     o[2*count + k] = v.tube_q_3;
-    o[4*count + k] = tube_q_1 + (tube_q_2 + v.tube_q_3);
     o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
         UNLESS(magnitude(v.tube_q_3_t) > LEAST_3);
+    o[4*count + k] = tube_q_1 + (tube_q_2 + v.tube_q_3);
 }
 
 INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t count, const real
@@ -4728,9 +4791,11 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         inverse_kinematics_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -4745,25 +4810,30 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ups[5*LANES];
-    real o_tube[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ups[5*LANES];
+    ALIGNED real o_tube[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_ups(m, LANES, i, k, k, LANES, s, X, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_ups(LANES, i, k, k, LANES, o_ups, q, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_tube(LANES, k, k, LANES, o_tube, q, t);
         }
@@ -4783,10 +4853,8 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
+    any_singular_ups(k, &v, o + 3*count);
     o[4*count + k] = v.ups_qd_1 + (v.ups_qd_2 + v.ups_S_dot_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -4811,11 +4879,8 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.tube_qd_2;
     /* (tube-qd_3) rate of joint 3 */
     o[2*count + k] = v.tube_S_dot_in_axes2_x;
+    any_singular_tube_3(k, &v, o + 3*count);
     o[4*count + k] = v.tube_qd_1_t_2 + (v.tube_qd_2 + v.tube_S_dot_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
-        LEAST_4);
 }
 
 INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -4836,9 +4901,11 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         joint_rates_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, o_tube);
     }
@@ -4853,25 +4920,30 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ups[5*LANES];
-    real o_tube[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ups[5*LANES];
+    ALIGNED real o_tube[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_ups(m, LANES, i, k, k, LANES, s, X, V, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_ups(LANES, i, k, k, LANES, o_ups, qd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_tube(m, LANES, i, k, k, LANES, s, X, V, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_tube(LANES, k, k, LANES, o_tube, qd, t);
         }
@@ -4894,10 +4966,8 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
+    any_singular_ups(k, &v, o + 3*count);
     o[4*count + k] = v.ups_qdd_1 + (v.ups_qdd_2 + ups_rel_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -4927,11 +4997,8 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.tube_qdd_2;
     /* (tube-qdd_3) acceleration of joint 3 */
     o[2*count + k] = tube_rel_in_axes2_x;
+    any_singular_tube_3(k, &v, o + 3*count);
     o[4*count + k] = v.tube_qdd_1_t + (v.tube_qdd_2 + tube_rel_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) >
-        LEAST_4);
 }
 
 INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t count, const real
@@ -4952,9 +5019,11 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         joint_accelerations_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
     }
@@ -4969,25 +5038,30 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_ups[5*LANES];
-    real o_tube[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_ups[5*LANES];
+    ALIGNED real o_tube[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_ups(m, LANES, i, k, k, LANES, s, X, V, A, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_ups(LANES, i, k, k, LANES, o_ups, qdd, t);
         }
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_tube(m, LANES, i, k, k, LANES, s, X, V, A, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_tube(LANES, k, k, LANES, o_tube, qdd, t);
         }
@@ -5015,10 +5089,8 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = tube_phi_c2;
     /* (tube-phi_c3) */
     o[2*count + k] = tube_phi_c3;
+    any_singular_tube_2(k, &v, o + 3*count);
     o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
-    o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4);
 }
 
 INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -5037,6 +5109,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         constraints_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), s, X, o_tube);
     }
@@ -5048,16 +5121,19 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_tube[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_tube[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_legs_tube(m, LANES, i, k, k, LANES, s, X, o_tube);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_place_tube(LANES, k, k, LANES, o_tube, constraints, t);
         }
@@ -5101,9 +5177,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = v.axis_x_ups_axes2_x;
     o[4*count + k] = v.axis_x_ups_axes2_y;
     o[5*count + k] = v.axis_x_ups_axes2_z;
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_singular_ups(k, &v, o + 6*count);
 }
 
 INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -5156,10 +5230,7 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size
     o[18*count + k] = v.tube_mu_c3_x;
     o[19*count + k] = v.tube_mu_c3_y;
     o[20*count + k] = v.tube_mu_c3_z;
-    o[21*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
-        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
+    any_singular_tube(k, &v, o + 21*count);
 }
 
 INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5201,11 +5272,13 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), s, X, V, A, o_ups);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        IN_VECTORS(BESIDE(LEGS_OF_tube))
         for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
             legs_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), s, X, V, A, o_tube);
         }
@@ -5237,21 +5310,47 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, s, X, &v);
+    /* (ups-S) from the base point to the connection point */
+    const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
+        v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
+        v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ups_root_1_2 = 1/ups_root_1_2;
+    const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
+    const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ups_q_3_2 = 1/ups_q_3_2;
+    const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
+    /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+    const real ups_s_2_t = inv_ups_q_3_2*v.ups_S_in_turn1_z;
     /* (potential) */
-    const real ups_potential_t_4 = v.ups_c_1*m->ups_potential_t[i] +
-        m->ups_potential_t_2[i]*v.ups_s_1;
-    const real ups_potential_t_5 = v.ups_g_in_axes2_y*(m->ups_h_2_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_z[i] -
-        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_4 -
-        v.ups_c_2*m->ups_potential_t_3[i])) - v.ups_g_in_axes2_z*(m->ups_h_2_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_y[i] + m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
-        m->ups_potential_t[i]*v.ups_s_1)) - v.ups_g_in_axes2_x*(m->ups_h_2_in_spec2_x[i] +
-        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_4 +
-        v.ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    const real ups_potential_t_7 = ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*ups_s_1;
+    const real ups_potential_t_8 = ups_c_1*m->ups_potential_t_4[i] +
+        m->ups_potential_t_5[i]*ups_s_1;
+    const real ups_potential_t_9 = (ups_potential_t_7*ups_s_2_t -
+        ups_c_2_2*m->ups_potential_t_3[i])*(m->ups_h_2_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_z[i] - m->ups_link2_mass[i]*(ups_potential_t_8*ups_s_2_t -
+        ups_c_2_2*m->ups_potential_t_6[i])) - (ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
+        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_5[i] -
+        m->ups_potential_t_4[i]*ups_s_1)) - (ups_c_2_2*ups_potential_t_7 +
+        m->ups_potential_t_3[i]*ups_s_2_t)*(m->ups_h_2_in_spec2_x[i] +
+        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(ups_c_2_2*ups_potential_t_8 +
+        m->ups_potential_t_6[i]*ups_s_2_t));
     /* (potential) */
-    gather(&terms[0*count + k], add, ups_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
+    gather(&terms[0*count + k], add, ups_potential_t_9);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(ups_root_1_t_5) > LEAST_1) +
+        UNLESS(magnitude(ups_q_3_t_3) > LEAST_1);
 }
 
 INLINE void potential_legs_tube(const prepared *m, size_t w, size_t i, size_t j, size_t k, size_t
@@ -5300,12 +5399,14 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups,
                 o_ups);
         }
     }
     for (size_t i = 0; i < LEGS(LEGS_OF_tube); i += BESIDE(LEGS_OF_tube)) {
+        IN_VECTORS(BESIDE(LEGS_OF_tube))
         for (size_t k = 0; k < BESIDE(LEGS_OF_tube); ++k) {
             potential_legs_tube(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube,
                 o_tube);
@@ -5356,15 +5457,15 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     stage_ups_X(m, w, i, j, s, X, &v);
     /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real ups_pivot_size = magnitude(v.ups_root_1_t);
-    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+    const real ups_pivot_size = magnitude(v.ups_root_1_t_4);
+    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t_2);
     const real ups_pivot_size_3 = magnitude(v.ups_root_1);
     const real ups_pivot_size_4 = magnitude(v.ups_q_3);
     const real ups_least_pivots =
         lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
         R(0.7231023985306559)*root(ups_pivot_size_2)),
         R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
     const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
@@ -5372,21 +5473,12 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         ups_spread_t_3*ups_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.ups_H_a_3_x;
-    o[4*count + k] = v.ups_H_a_3_y;
-    o[5*count + k] = v.ups_H_a_3_z;
+    any_entries_ups(k, count, &v, o);
     /* (ups-G) */
     o[6*count + k] = ups_least_pivots;
+    any_singular_ups(k, &v, o + 7*count);
     o[8*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
         ((v.ups_H_a_3_x + v.ups_H_a_3_y) + (v.ups_H_a_3_z + ups_least_pivots));
-    o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -5428,37 +5520,15 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t i, size_t j,
         + tube_spread_t_3*tube_spread_t_3;
     /* (spread) */
     gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
-    /* (tube-n_c1) unit force of the constraint wrench */
-    o[0*count + k] = v.axis_y_tube_axes2_x;
-    o[1*count + k] = v.axis_y_tube_axes2_y;
-    o[2*count + k] = v.axis_y_tube_axes2_z;
-    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.tube_Hk_a_1_x;
-    o[4*count + k] = v.tube_Hk_a_1_y;
-    o[5*count + k] = v.tube_Hk_a_1_z;
-    /* (tube-n_c2) unit force of the constraint wrench */
-    o[6*count + k] = v.axis_z_tube_axes2_x;
-    o[7*count + k] = v.axis_z_tube_axes2_y;
-    o[8*count + k] = v.axis_z_tube_axes2_z;
-    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.tube_Hk_a_2_x;
-    o[10*count + k] = v.tube_Hk_a_2_y;
-    o[11*count + k] = v.tube_Hk_a_2_z;
-    /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-    o[12*count + k] = v.tube_mu_c3_x;
-    o[13*count + k] = v.tube_mu_c3_y;
-    o[14*count + k] = v.tube_mu_c3_z;
+    any_entries_tube(k, count, &v, o);
     /* (tube-G) */
     o[15*count + k] = tube_least_pivots;
+    any_singular_tube(k, &v, o + 16*count);
     o[17*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
         (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
         (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y))) + (((v.axis_z_tube_axes2_z +
         v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) + ((v.tube_mu_c3_x +
         v.tube_mu_c3_y) + (v.tube_mu_c3_z + tube_least_pivots)));
-    o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
-        UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
-        + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_3) >
-        LEAST_4) + UNLESS(magnitude(v.tube_qd_1_t) > LEAST_4);
 }
 
 INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -5486,7 +5556,7 @@ INLINE void condition_place_tube(size_t w, size_t k, size_t at, size_t count, co
 
 INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_tube = sums[1*w + k];
     const real spread_ups = sums[0*w + k];
     const real spread_ = root(R(0.25)*spread_tube + R(0.25)*spread_ups);
@@ -5505,9 +5575,11 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, s, X, terms_ups, o_ups);
     }
+    IN_VECTORS(LEGS(LEGS_OF_tube))
     for (size_t k = 0; k < LEGS(LEGS_OF_tube); ++k) {
         condition_legs_tube(m, 1, k, 0, k, LEGS(LEGS_OF_tube), 0, s, X, terms_tube, o_tube);
     }
@@ -5544,8 +5616,8 @@ int tricept_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -5567,8 +5639,8 @@ int tricept_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5591,8 +5663,8 @@ int tricept_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -5614,8 +5686,8 @@ int tricept_Hk(const prepared *m, const real *X, real *Hk_out)
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], Hk[NV*NC*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
@@ -5637,8 +5709,8 @@ int tricept_constraints(const prepared *m, const real *X, real *constraints_out)
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[NQ*LANES], constraints[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], constraints[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
@@ -5662,8 +5734,8 @@ int tricept_constraint_bias(const prepared *m, const real *X, const real *V, rea
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5686,8 +5758,8 @@ int tricept_inverse_kinematics(const prepared *m, const real *X, real *q_out)
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -5710,8 +5782,8 @@ int tricept_joint_rates(const prepared *m, const real *X, const real *V, real *q
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5736,8 +5808,8 @@ int tricept_joint_accelerations(const prepared *m, const real *X, const real *V,
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5770,9 +5842,9 @@ int tricept_dynamics(const prepared *m, const real *X, const real *V, real *M_ou
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
-        constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES],
+        Hk[NV*NC*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -5788,6 +5860,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -5992,16 +6065,17 @@ int tricept_inverse_dynamics(const prepared *m, const real *X, const real *V, co
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
-        solve_1[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES],
+        beside_1[NV*NV*LANES] = {0}, solve_1[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -6054,11 +6128,11 @@ int tricept_forward_dynamics(const prepared *m, const real *X, const real *V, co
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
-        {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
-        solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES],
+        times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES],
+        join_1[9*LANES] = {0}, solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -6066,12 +6140,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 3*LANES; ++i) {
         negative_1[i] = -constraint_bias[i];
     }

@@ -122,16 +122,16 @@ typedef struct {
     tricept_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
             ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
             ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
-            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
-            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
-            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
-            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
-            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
-            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
-            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
-            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
-            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_Sigma_2_in_axes2_zz[4], ups_base_frame_xx[4], ups_base_frame_xy[4],
+            ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4], ups_base_frame_yz[4],
+            ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4], ups_base_point_x[4],
+            ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4], ups_branch_2[4],
+            ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4], ups_h_2_in_spec2_z[4],
+            ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4], ups_h_3_in_spec2_z[4],
+            ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4], ups_h_group_2_in_axes2_z[4],
+            ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4], ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4],
+            ups_potential_t_4[4], ups_potential_t_5[4], ups_potential_t_6[4];
     /* 1 legs of type tube */
     tricept_real tube_J_group_2_in_axes2_xx[1], tube_J_group_2_in_axes2_xy[1],
             tube_J_group_2_in_axes2_xz[1], tube_J_group_2_in_axes2_yy[1],
@@ -172,19 +172,19 @@ extern const char *const tricept_ACTUATOR_NAMES[TRICEPT_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tricept_prepare(const tricept_params *params, tricept_model *model);
 
-/* Inertia matrix M. 838 mul, 624 add, 11 div, 9 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 826 mul, 615 add, 11 div, 9 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tricept_M(const tricept_model *model, const tricept_real *X, tricept_real *M);
 size_t tricept_M_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
     *M, int *status);
 
-/* Velocity and gravity terms Z. 883 mul, 642 add, 12 div, 9 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 874 mul, 639 add, 12 div, 9 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tricept_Z(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *Z);
 size_t tricept_Z_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 93 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 96 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tricept_H(const tricept_model *model, const tricept_real *X, tricept_real *H);
 size_t tricept_H_batch(const tricept_model *model, size_t n, const tricept_real *X, tricept_real
@@ -209,34 +209,34 @@ int tricept_constraint_bias(const tricept_model *model, const tricept_real *X, c
 size_t tricept_constraint_bias_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *bias, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 108 mul, 80 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 129 mul, 92 add,
    8 div, 8 sqrt, 8 trig. In: X (NQ). Out: q (NJ). */
 int tricept_inverse_kinematics(const tricept_model *model, const tricept_real *X, tricept_real *q);
 size_t tricept_inverse_kinematics_batch(const tricept_model *model, size_t n, const tricept_real
     *X, tricept_real *q, int *status);
 
-/* Rates of all joints. 351 mul, 221 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 339 mul, 212 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tricept_joint_rates(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *rates);
 size_t tricept_joint_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of all joints. 535 mul, 345 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 523 mul, 336 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tricept_joint_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);
 size_t tricept_joint_accelerations_batch(const tricept_model *model, size_t n, const tricept_real
     *X, const tricept_real *V, const tricept_real *A, tricept_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1498 mul, 1130 add, 12 div, 9 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1489 mul, 1127 add, 12 div, 9 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tricept_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *M, tricept_real *Z, tricept_real *H);
 size_t tricept_dynamics_batch(const tricept_model *model, size_t n, const tricept_real *X, const
     tricept_real *V, tricept_real *M, tricept_real *Z, tricept_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 995 mul, 740 add, 12 div, 9 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 986 mul, 737 add, 12 div, 9 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU), lambda (NC). */
 int tricept_inverse_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -246,7 +246,7 @@ size_t tricept_inverse_dynamics_batch(const tricept_model *model, size_t n, cons
     const tricept_real *V, const tricept_real *A, const tricept_real *wrench, tricept_real *tau,
     tricept_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1498 mul, 1130 add, 12 div, 9
+/* Acceleration A under the actuator forces tau and the wrench. 1489 mul, 1127 add, 12 div, 9
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tricept_forward_dynamics(const tricept_model *model, const tricept_real *X, const tricept_real
@@ -266,7 +266,7 @@ size_t tricept_complete_acceleration_batch(const tricept_model *model, size_t n,
     tricept_real *completed, int *status);
 
 /* Force and moment of each leg on the platform at its platform joint, base axes. The actuators
-   give the forces of inverse_dynamics. 872 mul, 626 add, 12 div, 9 sqrt, 0 trig; inverse dynamics
+   give the forces of inverse_dynamics. 863 mul, 623 add, 12 div, 9 sqrt, 0 trig; inverse dynamics
    apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (4 x 6). */
 int tricept_leg_reactions(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, const tricept_real *A, const tricept_real *wrench, tricept_real *forces);
@@ -284,7 +284,7 @@ size_t tricept_energy_batch(const tricept_model *model, size_t n, const tricept_
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 334 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (3), legs (4). */
 int tricept_condition(const tricept_model *model, const tricept_real *X, tricept_real *sigma,
     tricept_real *legs);
@@ -293,7 +293,7 @@ size_t tricept_condition_batch(const tricept_model *model, size_t n, const trice
 
 /* The same with the singular values of [H Hk], which inverse dynamics solves. The length is the
    rms distance of the platform points from their centroid, or where they coincide the rms size of
-   the legs. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   the legs. 334 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (4). */
 int tricept_condition_constrained(const tricept_model *model, const tricept_real *X, tricept_real
     *sigma, tricept_real *legs);
@@ -302,14 +302,14 @@ size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n,
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
    the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
-   constraints leave. 331 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X
+   constraints leave. 334 mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X
    (NQ). Out: measure (1), isotropy (1). */
 int tricept_manipulability(const tricept_model *model, const tricept_real *X, tricept_real
     *measure, tricept_real *isotropy);
 size_t tricept_manipulability_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *measure, tricept_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 331
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 334
    mul, 229 add, 7 div, 18 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
    (1), legs (1). */
 int tricept_singularity_distance(const tricept_model *model, const tricept_real *X, tricept_real
@@ -338,7 +338,7 @@ int tricept_dissipation(const tricept_model *model, const tricept_real *X, const
 size_t tricept_dissipation_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *dissipation, int *status);
 
-/* Generalised momentum M V. 838 mul, 624 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 826 mul, 615 add, 11 div, 9 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tricept_momentum(const tricept_model *model, const tricept_real *X, const tricept_real *V,
     tricept_real *momentum);
@@ -346,32 +346,32 @@ size_t tricept_momentum_batch(const tricept_model *model, size_t n, const tricep
     tricept_real *V, tricept_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 108 mul, 80 add, 8 div, 8 sqrt, 8 trig. In: X (NQ). Out: margins (NJ). */
+   where there is none. 129 mul, 92 add, 8 div, 8 sqrt, 8 trig. In: X (NQ). Out: margins (NJ). */
 int tricept_joint_margins(const tricept_model *model, const tricept_real *X, tricept_real
     *margins);
 size_t tricept_joint_margins_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 108 mul, 80 add, 8 div, 8 sqrt, 8
+/* Whether all joints are within their limits of displacement. 129 mul, 92 add, 8 div, 8 sqrt, 8
    trig. In: X (NQ). Out: within (1). */
 int tricept_within_limits(const tricept_model *model, const tricept_real *X, tricept_real *within);
 size_t tricept_within_limits_batch(const tricept_model *model, size_t n, const tricept_real *X,
     tricept_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 108 mul, 80 add, 8 div, 8 sqrt, 8
+/* Displacements of the actuated joints, in the order of tau. 129 mul, 92 add, 8 div, 8 sqrt, 8
    trig. In: X (NQ). Out: q (NU). */
 int tricept_actuator_positions(const tricept_model *model, const tricept_real *X, tricept_real *q);
 size_t tricept_actuator_positions_batch(const tricept_model *model, size_t n, const tricept_real
     *X, tricept_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 351 mul, 221 add, 11 div, 9 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 339 mul, 212 add, 11 div, 9 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int tricept_actuator_rates(const tricept_model *model, const tricept_real *X, const tricept_real
     *V, tricept_real *rates);
 size_t tricept_actuator_rates_batch(const tricept_model *model, size_t n, const tricept_real *X,
     const tricept_real *V, tricept_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 535 mul, 345 add, 11 div, 9 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 523 mul, 336 add, 11 div, 9 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tricept_actuator_accelerations(const tricept_model *model, const tricept_real *X, const
     tricept_real *V, const tricept_real *A, tricept_real *accelerations);

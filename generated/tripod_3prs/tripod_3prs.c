@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3PRS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -159,6 +184,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -185,6 +211,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -244,19 +271,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -304,10 +334,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -359,6 +391,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -848,6 +881,7 @@ APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, rea
         real *restrict other)
 {
     for (size_t j = p; j <= n; ++j) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
             pivot[j*LANES + k] = best[k] == i ? up : down;
@@ -861,17 +895,20 @@ INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
     real most[LANES], best[LANES], any = 0;
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
         best[k] = 0;
     }
     for (size_t i = p + 1; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real size = magnitude(a[i*row + p*LANES + k]);
             best[k] = size > most[k] ? (real)i : best[k];
             most[k] = larger(size, most[k]);
         }
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         any += best[k];
     }
@@ -889,14 +926,17 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             size[k] = 1/size[k];
         }
         for (size_t j = 0; j <= n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + j*LANES + k] *= size[k];
             }
@@ -905,6 +945,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t p = 0; p < n; ++p) {
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
@@ -912,10 +953,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         for (size_t i = p + 1; i < n; ++i) {
             real *const other = a + i*row;
             real factor[LANES];
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 factor[k] = other[p*LANES + k]*x[p*LANES + k];
             }
             for (size_t j = p + 1; j <= n; ++j) {
+                SHORT_IN_VECTORS
                 for (size_t k = 0; k < LANES; ++k) {
                     other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
                 }
@@ -923,10 +966,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = n; p-- > 0;) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             x[p*LANES + k] *= a[p*row + n*LANES + k];
         }
         for (size_t i = 0; i < p; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
             }
@@ -1211,6 +1256,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1225,6 +1271,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1236,6 +1283,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1245,6 +1293,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1271,6 +1320,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1301,6 +1351,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1345,6 +1396,7 @@ INLINE void saddle(size_t n, size_t p, size_t stride, size_t w, const real *a, c
     }
     for (size_t j = 0; j < p; ++j) {
         for (size_t i = 0; i < n; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 x[(n + j)*row + i*w + k] = b[(i*p + j)*w + k];
             }
@@ -1986,6 +2038,70 @@ INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, val
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_sums_prs(size_t k, size_t count, int add, const values_prs *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->prs_d_c_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->prs_d_c_xy);  /* M_tt_t_2 */
+    gather(&terms[2*count + k], add, v->prs_d_c_xz);  /* M_tt_t_3 */
+    gather(&terms[3*count + k], add, v->prs_d_c_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->prs_d_c_yz);  /* M_tt_t_5 */
+    gather(&terms[5*count + k], add, v->prs_d_c_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->prs_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v->prs_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v->prs_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[9*count + k], add, v->prs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v->prs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[11*count + k], add, v->prs_M_ta_t_6);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->prs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->prs_M_ta_t_8);  /* M_ta_zy_of_legs */
+    /* (M_aa) rotational block of M */
+    gather(&terms[14*count + k], add, v->prs_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[15*count + k], add, v->prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[16*count + k], add, v->prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[17*count + k], add, v->prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[18*count + k], add, v->prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[19*count + k], add, v->prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_prs_2(size_t k, size_t count, int add, const values_prs *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->prs_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->prs_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->prs_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->prs_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->prs_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->prs_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_prs(size_t k, size_t count, const values_prs *v, real *o)
+{
+    /* (prs-w_1) reciprocal vector 1 */
+    o[0*count + k] = v->prs_w_1_x;
+    o[1*count + k] = v->prs_w_1_y;
+    o[2*count + k] = v->prs_w_1_z;
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->prs_H_a_1_x;
+    o[4*count + k] = v->prs_H_a_1_y;
+    o[5*count + k] = v->prs_H_a_1_z;
+}
+
+INLINE void any_entries_prs_2(const prepared *m, size_t i, size_t k, size_t count, const
+    values_prs *v, real *o)
+{
+    /* (legs_size) rms size of the legs, taken where the platform points coincide */
+    o[0*count + k] = m->prs_base_frame_xz[i];
+    o[1*count + k] = m->prs_base_frame_yz[i];
+    o[2*count + k] = m->prs_base_frame_zz[i];
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->prs_Hk_a_1_x;
+    o[4*count + k] = v->prs_Hk_a_1_y;
+    o[5*count + k] = v->prs_Hk_a_1_z;
+}
+
 INLINE void any_place_prs(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->unreachable[k] += o[0*count + at];
@@ -2061,63 +2177,20 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     /* (prs-u_1) centripetal acceleration of the connection point */
     const real prs_u_1_in_axes2_z = m->prs_base_frame_xz[i]*v.prs_u_1_x +
         m->prs_base_frame_yz[i]*v.prs_u_1_y + m->prs_base_frame_zz[i]*v.prs_u_1_z;
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
-    gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
-    gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, -v.prs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.prs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.prs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.prs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[20*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[21*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[22*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[23*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[24*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[25*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (prs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prs_w_1_x;
-    o[1*count + k] = v.prs_w_1_y;
-    o[2*count + k] = v.prs_w_1_z;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prs_H_a_1_x;
-    o[4*count + k] = v.prs_H_a_1_y;
-    o[5*count + k] = v.prs_H_a_1_z;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[6*count + k] = m->prs_base_frame_xz[i];
-    o[7*count + k] = m->prs_base_frame_yz[i];
-    o[8*count + k] = m->prs_base_frame_zz[i];
-    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prs_Hk_a_1_x;
-    o[10*count + k] = v.prs_Hk_a_1_y;
-    o[11*count + k] = v.prs_Hk_a_1_z;
+    any_sums_prs(k, count, add, &v, terms);
+    any_sums_prs_2(k, count, add, &v, terms + 20*count);
+    any_entries_prs(k, count, &v, o);
+    any_entries_prs_2(m, i, k, count, &v, o + 6*count);
     /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
        */
     o[12*count + k] = prs_u_1_in_axes2_z;
+    o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
     o[15*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
         (v.prs_H_a_1_y + v.prs_H_a_1_z))) + ((m->prs_base_frame_xz[i] +
         (m->prs_base_frame_yz[i] + m->prs_base_frame_zz[i])) + ((v.prs_Hk_a_1_x +
         v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
-    o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
-    o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
-        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
 INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2144,14 +2217,14 @@ INLINE void dynamics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2170,7 +2243,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2189,7 +2262,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[20*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2199,7 +2272,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[22*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[23*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2272,6 +2345,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_prs[26*LEGS(LEGS_OF_prs)] CLEARED, o_prs[16*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         dynamics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
@@ -2289,8 +2363,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[33*LANES], sums[26*LANES];
-    real o_prs[16*LANES];
+    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real o_prs[16*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2298,13 +2373,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 26*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_prs(LANES, i, k, k, LANES, o_prs, H, Hk, constraint_bias, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2317,29 +2395,7 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
-    gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
-    gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
-    gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.prs_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, -v.prs_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, -v.prs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[9*count + k], add, v.prs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, v.prs_M_ta_t_3);  /* M_ta_yx_of_legs */
-    gather(&terms[11*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.prs_M_ta_t_7);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.prs_M_ta_t_8);  /* M_ta_zy_of_legs */
-    /* (M_aa) rotational block of M */
-    gather(&terms[14*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[15*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[16*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[17*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[18*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[19*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+    any_sums_prs(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
@@ -2348,14 +2404,14 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->platform_mass - M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->platform_mass - M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass - M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
     const real M_ta_xx = -M_ta_yy - M_ta_zz;
@@ -2374,7 +2430,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[14*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2447,6 +2503,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_prs[20*LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         M_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
@@ -2462,21 +2519,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[20*LANES];
-    real o_prs[2*LANES];
+    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real o_prs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 20*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, sums, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prs(k, k, LANES, o_prs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2501,14 +2562,7 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_prs_X(m, w, i, j, s, X, &v);
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.prs_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.prs_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.prs_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.prs_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.prs_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.prs_Z_a_t_3);  /* Z_a_z_of_legs */
+    any_sums_prs_2(k, count, add, &v, terms);
     o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
@@ -2516,7 +2570,7 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2526,7 +2580,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2553,6 +2607,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_prs[6*LEGS(LEGS_OF_prs)] CLEARED, o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Z_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, V, terms_prs, o_prs);
     }
@@ -2569,8 +2624,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_prs[2*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_prs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2578,13 +2634,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_prs(k, k, LANES, o_prs, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2596,19 +2655,12 @@ INLINE void H_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (prs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prs_w_1_x;
-    o[1*count + k] = v.prs_w_1_y;
-    o[2*count + k] = v.prs_w_1_z;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prs_H_a_1_x;
-    o[4*count + k] = v.prs_H_a_1_y;
-    o[5*count + k] = v.prs_H_a_1_z;
-    o[8*count + k] = (v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
-        (v.prs_H_a_1_y + v.prs_H_a_1_z));
+    any_entries_prs(k, count, &v, o);
     o[6*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[7*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
+    o[8*count + k] = (v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
+        (v.prs_H_a_1_y + v.prs_H_a_1_z));
 }
 
 INLINE void H_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -2631,6 +2683,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_prs[9*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         H_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2642,16 +2695,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_prs[9*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[9*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_place_prs(LANES, i, k, k, LANES, o_prs, H, t);
         }
@@ -2664,14 +2720,7 @@ INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_prs v;
     stage_prs_X(m, w, i, j, s, X, &v);
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[0*count + k] = m->prs_base_frame_xz[i];
-    o[1*count + k] = m->prs_base_frame_yz[i];
-    o[2*count + k] = m->prs_base_frame_zz[i];
-    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prs_Hk_a_1_x;
-    o[4*count + k] = v.prs_Hk_a_1_y;
-    o[5*count + k] = v.prs_Hk_a_1_z;
+    any_entries_prs_2(m, i, k, count, &v, o);
     o[6*count + k] = (m->prs_base_frame_xz[i] + (m->prs_base_frame_yz[i] +
         m->prs_base_frame_zz[i])) + (v.prs_Hk_a_1_x + (v.prs_Hk_a_1_y + v.prs_Hk_a_1_z));
 }
@@ -2694,6 +2743,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
     real o_prs[7*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         Hk_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -2705,16 +2755,19 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[7*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[7*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_place_prs(LANES, i, k, k, LANES, o_prs, Hk, t);
         }
@@ -2751,6 +2804,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
     real o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraint_bias_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -2762,16 +2816,19 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[2*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_legs_prs(m, LANES, i, k, k, LANES, s, X, V, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_place_prs(LANES, i, k, k, LANES, o_prs, constraint_bias, t);
         }
@@ -2853,7 +2910,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_prs_V_X(m, w, i, j, V, &v);
     stage_prs_A_V_X(m, w, i, j, s, A, &v);
     stage_prs_legs_required(m, i, &v);
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
     const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
     const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
@@ -2861,7 +2918,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     const real prs_H_a_1_x_2 = v.prs_q_y*v.prs_w_1_z_2 - v.prs_q_z*v.prs_w_1_y_2;
     const real prs_H_a_1_y_2 = v.prs_q_z*v.prs_w_1_x_2 - v.prs_q_x*v.prs_w_1_z_2;
     const real prs_H_a_1_z_2 = v.prs_q_x*v.prs_w_1_y_2 - v.prs_q_y*v.prs_w_1_x_2;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, v.prs_c_z);  /* R_t_z_of_legs */
@@ -2877,14 +2934,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = prs_H_a_1_x_2;
     o[4*count + k] = prs_H_a_1_y_2;
     o[5*count + k] = prs_H_a_1_z_2;
-    /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    o[6*count + k] = m->prs_base_frame_xz[i];
-    o[7*count + k] = m->prs_base_frame_yz[i];
-    o[8*count + k] = m->prs_base_frame_zz[i];
-    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prs_Hk_a_1_x;
-    o[10*count + k] = v.prs_Hk_a_1_y;
-    o[11*count + k] = v.prs_Hk_a_1_z;
+    any_entries_prs_2(m, i, k, count, &v, o + 6*count);
     o[12*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[13*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
@@ -2911,7 +2961,7 @@ INLINE void required_place_prs(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -2921,7 +2971,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -2949,6 +2999,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
             required_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), 0, s, X, V, A, terms_prs,
                 o_prs);
@@ -2967,8 +3018,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_prs[14*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_prs[14*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -2976,13 +3028,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_prs(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_prs(LANES, i, k, k, LANES, o_prs, H, Hk, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3002,9 +3057,9 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t i, s
     o[0*count + k] = prs_q_1;
     /* (prs-q_2) */
     o[1*count + k] = prs_q_2;
-    o[4*count + k] = prs_q_1 + prs_q_2;
     o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i]);
+    o[4*count + k] = prs_q_1 + prs_q_2;
 }
 
 INLINE void inverse_kinematics_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3023,6 +3078,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         inverse_kinematics_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3034,16 +3090,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_prs(LANES, i, k, k, LANES, o_prs, q, t);
         }
@@ -3065,10 +3124,10 @@ INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t i, size_t j
     o[0*count + k] = prs_qd_1;
     /* (prs-qd_2) rate of joint 2 */
     o[1*count + k] = -v.prs_qd_1_t;
-    o[4*count + k] = prs_qd_1 + v.prs_qd_1_t;
     o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
+    o[4*count + k] = prs_qd_1 + v.prs_qd_1_t;
 }
 
 INLINE void joint_rates_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3088,6 +3147,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_rates_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, o_prs);
     }
@@ -3099,16 +3159,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_prs(m, LANES, i, k, k, LANES, s, X, V, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_prs(LANES, i, k, k, LANES, o_prs, qd, t);
         }
@@ -3127,10 +3190,10 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t i, 
     o[0*count + k] = v.prs_qdd_1;
     /* (prs-qdd_2) acceleration of joint 2 */
     o[1*count + k] = -v.prs_qdd_1_t;
-    o[4*count + k] = v.prs_qdd_1 + v.prs_qdd_1_t;
     o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
         + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
+    o[4*count + k] = v.prs_qdd_1 + v.prs_qdd_1_t;
 }
 
 INLINE void joint_accelerations_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3150,6 +3213,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_prs[5*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         joint_accelerations_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
     }
@@ -3161,16 +3225,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_prs(m, LANES, i, k, k, LANES, s, X, V, A, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_prs(LANES, i, k, k, LANES, o_prs, qdd, t);
         }
@@ -3201,6 +3268,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
     real o_prs[2*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         constraints_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), s, X, o_prs);
     }
@@ -3212,16 +3280,19 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_prs[2*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_prs[2*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_prs; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_legs_prs(m, LANES, i, k, k, LANES, s, X, o_prs);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_place_prs(LANES, i, k, k, LANES, o_prs, constraints, t);
         }
@@ -3279,6 +3350,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
             legs_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), s, X, V, A, o_prs);
         }
@@ -3340,6 +3412,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_prs); i += BESIDE(LEGS_OF_prs)) {
+        IN_VECTORS(BESIDE(LEGS_OF_prs))
         for (size_t k = 0; k < BESIDE(LEGS_OF_prs); ++k) {
             potential_legs_prs(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs,
                 o_prs);
@@ -3386,7 +3459,7 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
     const real prs_pivot_size_2 = magnitude(v.prs_v_2_in_axes0_y);
     const real prs_least_pivots = lesser(root(m->inv_prs_root_2_t[i]*prs_pivot_size),
         m->inv_prs_size[i]*prs_pivot_size_2);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real prs_spread_t = m->b_c_in_platform_x - m->prs_platform_point_x[i];
     const real prs_spread_t_2 = m->b_c_in_platform_y - m->prs_platform_point_y[i];
     const real prs_spread_t_3 = m->b_c_in_platform_z - m->prs_platform_point_z[i];
@@ -3394,32 +3467,18 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t i, size_t j, 
         prs_spread_t_3*prs_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, prs_spread_t_4);  /* spread_prs */
-    /* (prs-w_1) reciprocal vector 1 */
-    o[0*count + k] = v.prs_w_1_x;
-    o[1*count + k] = v.prs_w_1_y;
-    o[2*count + k] = v.prs_w_1_z;
-    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.prs_H_a_1_x;
-    o[4*count + k] = v.prs_H_a_1_y;
-    o[5*count + k] = v.prs_H_a_1_z;
-    /* (legs_size) */
-    o[6*count + k] = m->prs_base_frame_xz[i];
-    o[7*count + k] = m->prs_base_frame_yz[i];
-    o[8*count + k] = m->prs_base_frame_zz[i];
-    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.prs_Hk_a_1_x;
-    o[10*count + k] = v.prs_Hk_a_1_y;
-    o[11*count + k] = v.prs_Hk_a_1_z;
+    any_entries_prs(k, count, &v, o);
+    any_entries_prs_2(m, i, k, count, &v, o + 6*count);
     /* (prs-G) */
     o[12*count + k] = prs_least_pivots;
     o[13*count + k] = v.prs_disc_1;
+    o[14*count + k] = UNLESS(v.prs_disc_1 >= 0);
+    o[15*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
+        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
     o[16*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + ((v.prs_H_a_1_x +
         v.prs_H_a_1_y) + (v.prs_H_a_1_z + m->prs_base_frame_xz[i]))) +
         ((m->prs_base_frame_yz[i] + (m->prs_base_frame_zz[i] + v.prs_Hk_a_1_x)) +
         ((v.prs_Hk_a_1_y + v.prs_Hk_a_1_z) + (prs_least_pivots + v.prs_disc_1)));
-    o[14*count + k] = UNLESS(v.prs_disc_1 >= 0);
-    o[15*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*m->prs_root_2_t[i])
-        + UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*m->prs_size[i]);
 }
 
 INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3447,7 +3506,7 @@ INLINE void condition_place_prs(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_prs = sums[0*w + k];
     const real spread_ = root(spread_prs)*m->spread_t;
     /* (spread) */
@@ -3462,6 +3521,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     real terms_prs[LEGS(LEGS_OF_prs)] CLEARED, o_prs[17*LEGS(LEGS_OF_prs)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_prs))
     for (size_t k = 0; k < LEGS(LEGS_OF_prs); ++k) {
         condition_legs_prs(m, 1, k, 0, k, LEGS(LEGS_OF_prs), 0, s, X, terms_prs, o_prs);
     }
@@ -3490,8 +3550,8 @@ int tripod_3prs_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3513,8 +3573,8 @@ int tripod_3prs_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3537,8 +3597,8 @@ int tripod_3prs_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3560,8 +3620,8 @@ int tripod_3prs_Hk(const prepared *m, const real *X, real *Hk_out)
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], Hk[NV*NC*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
@@ -3583,8 +3643,8 @@ int tripod_3prs_constraints(const prepared *m, const real *X, real *constraints_
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[NQ*LANES], constraints[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], constraints[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
@@ -3608,8 +3668,8 @@ int tripod_3prs_constraint_bias(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3632,8 +3692,8 @@ int tripod_3prs_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3656,8 +3716,8 @@ int tripod_3prs_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3682,8 +3742,8 @@ int tripod_3prs_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3716,9 +3776,9 @@ int tripod_3prs_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
-        constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES],
+        Hk[NV*NC*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3734,6 +3794,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -3938,16 +3999,17 @@ int tripod_3prs_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
-        solve_1[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES],
+        beside_1[NV*NV*LANES] = {0}, solve_1[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -4000,11 +4062,11 @@ int tripod_3prs_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
-        {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
-        solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES],
+        times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES],
+        join_1[9*LANES] = {0}, solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4012,12 +4074,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 3*LANES; ++i) {
         negative_1[i] = -constraint_bias[i];
     }

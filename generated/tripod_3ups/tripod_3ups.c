@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPS_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -162,6 +187,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -188,6 +214,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -247,19 +274,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -307,10 +337,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -362,6 +394,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -641,13 +674,6 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
         const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
         const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_acc_3_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_acc_3_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
         const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -693,11 +719,17 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
         const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
         /* (potential) potential energy */
-        const real ups_potential_t = ups_base_frame_xx*ups_base_point_x +
+        const real ups_potential_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx;
+        const real ups_potential_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy;
+        const real ups_potential_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz;
+        const real ups_potential_t_4 = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_potential_t_2 = ups_base_frame_xy*ups_base_point_x +
+        const real ups_potential_t_5 = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
+        const real ups_potential_t_6 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
         KEEP_OF_LEG(ups_J_group_2_in_axes2_xx);
         KEEP_OF_LEG(ups_J_group_2_in_axes2_xy);
@@ -708,9 +740,6 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_xx);
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_yy);
         KEEP_OF_LEG(ups_Sigma_2_in_axes2_zz);
-        KEEP_OF_LEG(ups_acc_3_t);
-        KEEP_OF_LEG(ups_acc_3_t_2);
-        KEEP_OF_LEG(ups_acc_3_t_3);
         KEEP_OF_LEG(ups_base_frame_xx);
         KEEP_OF_LEG(ups_base_frame_xy);
         KEEP_OF_LEG(ups_base_frame_xz);
@@ -742,6 +771,9 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         KEEP_OF_LEG(ups_potential_t);
         KEEP_OF_LEG(ups_potential_t_2);
         KEEP_OF_LEG(ups_potential_t_3);
+        KEEP_OF_LEG(ups_potential_t_4);
+        KEEP_OF_LEG(ups_potential_t_5);
+        KEEP_OF_LEG(ups_potential_t_6);
         m_star_of_legs += leg < LEGS_OF_ups ? ups_link3_mass : 0;
         h_star_x_of_legs += leg < LEGS_OF_ups ? ups_h_star_t : 0;
         h_star_y_of_legs += leg < LEGS_OF_ups ? ups_h_star_t_2 : 0;
@@ -1056,6 +1088,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1072,6 +1105,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1081,6 +1115,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1107,6 +1142,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1137,6 +1173,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1173,17 +1210,18 @@ static void moved(const real *X, const real *step, real part, real *to)
 /* ---- what functions of the state share; v: values for others ---- */
 
 typedef struct {
-    real ups_root_1_t, ups_root_1, inv_ups_root_1, ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3,
-        ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x, axis_x_ups_axes2_y, axis_x_ups_axes2_z,
-        axis_z_ups_axes2_x, axis_z_ups_axes2_y, axis_z_ups_axes2_z, axis_y_ups_axes2_x,
-        axis_y_ups_axes2_y, axis_y_ups_axes2_z, ups_g_in_axes2_z, ups_g_in_axes2_x, ups_g_in_axes2_y,
-        ups_mu_2_t_5, ups_mu_2_t_6, ups_mu_2_t_7, ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2,
-        ups_S_ddot_t_3, ups_S_ddot_in_axes2_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2,
-        ups_W_2_in_axes2_yz, ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy,
-        ups_bias_in_axes2_z, ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4,
-        ups_c_t, ups_c_t_2, ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_Q_xx, ups_Q_yy, ups_Q_zz,
-        ups_Q_xy, ups_Q_xz, ups_Q_yz, ups_U_x, ups_U_y, ups_U_z, ups_S_ddot_in_axes2_y,
-        ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
+    real ups_S_x, ups_S_y, ups_S_z, ups_S_in_turn1_z, ups_root_1_t_4, ups_root_1, inv_ups_root_1,
+        ups_q_3_t, ups_q_3_t_2, ups_q_3, inv_ups_q_3, ups_c_2, ups_e_1_in_axes2_x, axis_x_ups_axes2_x,
+        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
+        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
+        ups_g_in_axes2_x, ups_g_in_axes2_y, ups_g_in_axes2_z, ups_mu_2_t_5, ups_mu_2_t_6,
+        ups_mu_2_t_7, ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3,
+        ups_S_ddot_in_axes2_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_W_2_in_axes2_yz,
+        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xx, ups_W_2_in_axes2_xy, ups_bias_in_axes2_z,
+        ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
+        ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_U_x, ups_U_y, ups_U_z, ups_S_ddot_in_axes2_y,
+        ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z, ups_Q_xx, ups_Q_yy, ups_Q_zz,
+        ups_Q_xy, ups_Q_xz, ups_Q_yz;
 } values_ups;
 
 INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_ups
@@ -1191,44 +1229,42 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
 {
     /* (ups-S) from the base point to the connection point */
     const real t_x = X[0*w + j];
-    const real ups_S_x = t_x + m->ups_platform_point_x[i] - m->ups_base_point_x[i];
+    v->ups_S_x = t_x + m->ups_platform_point_x[i] - m->ups_base_point_x[i];
     const real t_y = X[1*w + j];
-    const real ups_S_y = t_y + m->ups_platform_point_y[i] - m->ups_base_point_y[i];
+    v->ups_S_y = t_y + m->ups_platform_point_y[i] - m->ups_base_point_y[i];
     const real t_z = X[2*w + j];
-    const real ups_S_z = t_z + m->ups_platform_point_z[i] - m->ups_base_point_z[i];
-    const real ups_S_in_turn1_x = ups_S_x*m->ups_base_frame_xx[i] +
-        ups_S_y*m->ups_base_frame_yx[i] + ups_S_z*m->ups_base_frame_zx[i];
-    const real ups_S_in_turn1_y = ups_S_x*m->ups_base_frame_xy[i] +
-        ups_S_y*m->ups_base_frame_yy[i] + ups_S_z*m->ups_base_frame_zy[i];
-    const real ups_S_in_turn1_z = ups_S_x*m->ups_base_frame_xz[i] +
-        ups_S_y*m->ups_base_frame_yz[i] + ups_S_z*m->ups_base_frame_zz[i];
+    v->ups_S_z = t_z + m->ups_platform_point_z[i] - m->ups_base_point_z[i];
+    v->ups_S_in_turn1_z = v->ups_S_x*m->ups_base_frame_xz[i] +
+        v->ups_S_y*m->ups_base_frame_yz[i] + v->ups_S_z*m->ups_base_frame_zz[i];
     /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
-    v->ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y;
-    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t);
-    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real ups_root_1_t = v->ups_S_z*m->ups_base_frame_yz[i] -
+        v->ups_S_y*m->ups_base_frame_zz[i];
+    const real ups_root_1_t_2 = v->ups_S_x*m->ups_base_frame_zz[i] -
+        v->ups_S_z*m->ups_base_frame_xz[i];
+    const real ups_root_1_t_3 = v->ups_S_y*m->ups_base_frame_xz[i] -
+        v->ups_S_x*m->ups_base_frame_yz[i];
+    v->ups_root_1_t_4 = ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 +
+        ups_root_1_t_3*ups_root_1_t_3;
+    v->ups_root_1 = m->ups_branch_1[i]*root(v->ups_root_1_t_4);
+    /* (ups-q_1) displacement of joint 1 */
     v->inv_ups_root_1 = 1/v->ups_root_1;
-    v->ups_c_1 = v->inv_ups_root_1*ups_S_in_turn1_x;
-    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-    v->ups_s_1 = v->inv_ups_root_1*ups_S_in_turn1_y;
     /* (ups-q_3) displacement of joint 3 */
-    v->ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + v->ups_root_1_t;
-    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t);
+    v->ups_q_3_t = v->ups_S_in_turn1_z*v->ups_S_in_turn1_z;
+    v->ups_q_3_t_2 = v->ups_q_3_t + v->ups_root_1_t_4;
+    v->ups_q_3 = m->ups_branch_2[i]*root(v->ups_q_3_t_2);
     /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
     v->inv_ups_q_3 = 1/v->ups_q_3;
     v->ups_c_2 = v->inv_ups_q_3*v->ups_root_1;
     /* (ups-q_2) displacement of joint 2 */
-    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*ups_S_in_turn1_z;
+    v->ups_e_1_in_axes2_x = v->inv_ups_q_3*v->ups_S_in_turn1_z;
     /* (ups-S_dot) velocity of the connection point */
-    v->axis_x_ups_axes2_x = v->inv_ups_q_3*ups_S_x;
-    v->axis_x_ups_axes2_y = v->inv_ups_q_3*ups_S_y;
-    v->axis_x_ups_axes2_z = v->inv_ups_q_3*ups_S_z;
+    v->axis_x_ups_axes2_x = v->inv_ups_q_3*v->ups_S_x;
+    v->axis_x_ups_axes2_y = v->inv_ups_q_3*v->ups_S_y;
+    v->axis_x_ups_axes2_z = v->inv_ups_q_3*v->ups_S_z;
     /* (ups-qd_1) rate of joint 1 */
-    v->axis_z_ups_axes2_x = m->ups_base_frame_xy[i]*v->ups_c_1 -
-        m->ups_base_frame_xx[i]*v->ups_s_1;
-    v->axis_z_ups_axes2_y = m->ups_base_frame_yy[i]*v->ups_c_1 -
-        m->ups_base_frame_yx[i]*v->ups_s_1;
-    v->axis_z_ups_axes2_z = m->ups_base_frame_zy[i]*v->ups_c_1 -
-        m->ups_base_frame_zx[i]*v->ups_s_1;
+    v->axis_z_ups_axes2_x = v->inv_ups_root_1*ups_root_1_t;
+    v->axis_z_ups_axes2_y = v->inv_ups_root_1*ups_root_1_t_2;
+    v->axis_z_ups_axes2_z = v->inv_ups_root_1*ups_root_1_t_3;
     /* (ups-qd_2) rate of joint 2 */
     v->axis_y_ups_axes2_x = v->axis_x_ups_axes2_z*v->axis_z_ups_axes2_y -
         v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_z;
@@ -1237,12 +1273,12 @@ INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->axis_y_ups_axes2_z = v->axis_x_ups_axes2_y*v->axis_z_ups_axes2_x -
         v->axis_x_ups_axes2_x*v->axis_z_ups_axes2_y;
     /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-    const real ups_acc_3_t_4 = m->ups_acc_3_t[i]*v->ups_c_1 + m->ups_acc_3_t_2[i]*v->ups_s_1;
-    v->ups_g_in_axes2_z = m->ups_acc_3_t_2[i]*v->ups_c_1 - m->ups_acc_3_t[i]*v->ups_s_1;
-    v->ups_g_in_axes2_x = m->ups_acc_3_t_3[i]*v->ups_e_1_in_axes2_x +
-        ups_acc_3_t_4*v->ups_c_2;
-    v->ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
-        m->ups_acc_3_t_3[i]*v->ups_c_2;
+    v->ups_g_in_axes2_x = v->axis_x_ups_axes2_x*m->gravity_x +
+        v->axis_x_ups_axes2_y*m->gravity_y + v->axis_x_ups_axes2_z*m->gravity_z;
+    v->ups_g_in_axes2_y = v->axis_y_ups_axes2_x*m->gravity_x +
+        v->axis_y_ups_axes2_y*m->gravity_y + v->axis_y_ups_axes2_z*m->gravity_z;
+    v->ups_g_in_axes2_z = v->axis_z_ups_axes2_x*m->gravity_x +
+        v->axis_z_ups_axes2_y*m->gravity_y + v->axis_z_ups_axes2_z*m->gravity_z;
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->ups_mu_2_t_5 = v->ups_g_in_axes2_z*m->ups_h_group_2_in_axes2_y[i] -
         v->ups_g_in_axes2_y*m->ups_h_group_2_in_axes2_z[i];
@@ -1307,7 +1343,7 @@ INLINE void stage_ups_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->ups_mu_2_t_4 = m->ups_J_group_2_in_axes2_xy[i]*(ups_mu_2_t - ups_W_2_t);
     /* (ups-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_W_2_t_2 + ups_mu_2_t);
+    v->ups_c_t = m->ups_h_3_in_spec2_z[i]*(ups_mu_2_t + ups_W_2_t_2);
     v->ups_c_t_2 = m->ups_h_3_in_spec2_y[i]*(ups_W_2_t + ups_mu_2_t);
 }
 
@@ -1321,58 +1357,6 @@ INLINE void stage_ups_A_V_X(values_ups *v)
     v->ups_qdd_2_t_2 = v->inv_ups_q_3*(v->ups_S_ddot_t + v->ups_S_ddot_t_2 + v->ups_S_ddot_t_3
         - v->ups_qdd_2_t);
     v->ups_qdd_2 = v->ups_qdd_2_t_2 - v->ups_W_2_in_axes2_xy;
-}
-
-INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
-{
-    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real ups_d_alpha_1_in_axes2_xz = v->inv_ups_root_1*v->ups_e_1_in_axes2_x;
-    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real ups_d_phi_3_in_axes2_xy = v->inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
-    const real ups_d_phi_3_in_axes2_yy = v->inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
-    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real ups_d_c_in_axes2_xz = v->inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
-    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-        v->inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
-        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
-    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
-        v->inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
-        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
-    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
-        ups_d_phi_3_in_axes2_yy -
-        v->inv_ups_root_1*(v->ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
-        - m->ups_h_3_in_spec2_z[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
-        v->ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
-        m->ups_h_3_in_spec2_x[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
-    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
-    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
-        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-        v->axis_z_ups_axes2_x*ups_Q_t_2;
-    const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-        v->axis_z_ups_axes2_y*ups_Q_t_2;
-    const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-        v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
-    v->ups_Q_xx = -2*ups_Q_t_9;
-    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
-    v->ups_Q_yy = -2*ups_Q_t_10;
-    v->ups_Q_zz = -ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_xx - v->ups_Q_yy;
-    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
-        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
-    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
-        v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
-        v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
 }
 
 INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
@@ -1448,21 +1432,21 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
     v->ups_phi_3_in_axes2_x = v->ups_phi_3_t + ups_alpha_1_in_axes2_y*m->ups_h_3_in_spec2_y[i]
         - ups_B_2_in_axes2_xy*m->ups_h_3_in_spec2_z[i];
     /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 - v->ups_mu_2_t_5 -
-        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] -
+    const real ups_mu_2_in_axes2_x = v->ups_mu_2_t_2 -
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_z[i] - v->ups_mu_2_t_5 -
         v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_y[i] +
         m->ups_J_group_2_in_axes2_xz[i]*v->ups_qdd_2_t_2 +
         m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_x +
         ups_B_2_in_axes2_zy*m->ups_Sigma_2_in_axes2_yy[i] -
         ups_B_2_in_axes2_zx*m->ups_J_group_2_in_axes2_xy[i];
     const real ups_mu_2_in_axes2_y = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_y[i] -
-        v->ups_mu_2_t_6 - v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_3
+        v->ups_S_ddot_in_axes2_z*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_6 - v->ups_mu_2_t_3
         + m->ups_Sigma_2_in_axes2_zz[i]*ups_alpha_1_in_axes2_y -
         ups_B_2_in_axes2_xy*m->ups_J_group_2_in_axes2_yz[i] +
         ups_B_2_in_axes2_zy*m->ups_J_group_2_in_axes2_xy[i] -
         ups_B_2_in_axes2_zx*m->ups_Sigma_2_in_axes2_xx[i];
-    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] -
-        v->ups_mu_2_t_7 + v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] + v->ups_mu_2_t_4
+    const real ups_mu_2_in_axes2_z = v->ups_S_ddot_in_axes2_x*m->ups_h_3_in_spec2_z[i] +
+        v->ups_S_ddot_in_axes2_y*m->ups_h_3_in_spec2_x[i] - v->ups_mu_2_t_7 + v->ups_mu_2_t_4
         + m->ups_Sigma_2_in_axes2_xx[i]*v->ups_qdd_2_t_2 +
         m->ups_J_group_2_in_axes2_xz[i]*ups_alpha_1_in_axes2_x +
         m->ups_J_group_2_in_axes2_yz[i]*ups_alpha_1_in_axes2_y -
@@ -1477,6 +1461,58 @@ INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
         v->ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x);
 }
 
+INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real ups_d_alpha_1_in_axes2_xz = v->inv_ups_root_1*v->ups_e_1_in_axes2_x;
+    /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_d_phi_3_in_axes2_xy = v->inv_ups_q_3*m->ups_h_3_in_spec2_z[i];
+    const real ups_d_phi_3_in_axes2_yy = v->inv_ups_q_3*m->ups_h_3_in_spec2_x[i];
+    /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ups_d_c_in_axes2_xz = v->inv_ups_q_3*m->ups_h_3_in_spec2_y[i];
+    const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_q_3*(m->ups_h_3_in_spec2_x[i] +
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_zz[i]);
+    const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_y[i] -
+        v->inv_ups_q_3*(m->ups_J_group_2_in_axes2_xz[i]*ups_d_alpha_1_in_axes2_xz -
+        v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yz[i]);
+    const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*m->ups_h_3_in_spec2_z[i] -
+        ups_d_phi_3_in_axes2_yy -
+        v->inv_ups_root_1*(v->ups_e_1_in_axes2_x*(m->ups_J_group_2_in_axes2_xx[i]*ups_d_alpha_1_in_axes2_xz
+        - m->ups_h_3_in_spec2_z[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_xy[i]) -
+        v->ups_c_2*(m->ups_J_group_2_in_axes2_xy[i]*ups_d_alpha_1_in_axes2_xz -
+        m->ups_h_3_in_spec2_x[i] - v->inv_ups_q_3*m->ups_J_group_2_in_axes2_yy[i]));
+    /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+    const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_x*ups_Q_t_2;
+    const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_y*ups_Q_t_2;
+    const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+        v->axis_z_ups_axes2_z*ups_Q_t_2;
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_zz = -ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_xx - v->ups_Q_yy;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
+        v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
+        v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
+}
+
 INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
     real *H, status_flags *t)
 {
@@ -1485,6 +1521,40 @@ INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
     H[(2*NU + i)*w + k] = o[2*count + at];
     t->singular[k] += o[3*count + at];
     t->total[k] += o[4*count + at];
+}
+
+INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->ups_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->ups_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
+}
+
+INLINE void any_sums_ups_2(size_t k, size_t count, int add, const values_ups *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->ups_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->ups_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->ups_U_z);  /* Z_t_z_of_legs */
+}
+
+INLINE void any_entries_ups(size_t k, size_t count, const values_ups *v, real *o)
+{
+    /* (ups-w_3) reciprocal vector 3 */
+    o[0*count + k] = v->axis_x_ups_axes2_x;
+    o[1*count + k] = v->axis_x_ups_axes2_y;
+    o[2*count + k] = v->axis_x_ups_axes2_z;
+}
+
+INLINE void any_singular_ups(size_t k, const values_ups *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->ups_root_1_t_4) > LEAST_1) + UNLESS(magnitude(v->ups_q_3_t_2) >
+        LEAST_1) + UNLESS(magnitude(v->ups_root_1) > LEAST_2) + UNLESS(magnitude(v->ups_q_3) >
+        LEAST_2);
 }
 
 INLINE void any_place_ups_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -1501,40 +1571,26 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
-    stage_ups_M_dynamics(m, i, &v);
     stage_ups_Z_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[6*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[7*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[8*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
+    stage_ups_M_dynamics(m, i, &v);
+    any_sums_ups(k, count, add, &v, terms);
+    any_sums_ups_2(k, count, add, &v, terms + 6*count);
+    any_entries_ups(k, count, &v, o);
+    any_singular_ups(k, &v, o + 3*count);
     o[4*count + k] = v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
     *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_t_x_of_legs = sums[6*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
     const real Z_t_y_of_legs = sums[7*w + k];
@@ -1567,6 +1623,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 {
     real sums[9] CLEARED;
     real terms_ups[9*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     }
@@ -1582,17 +1639,20 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    real sums[9*LANES];
-    real o_ups[5*LANES];
+    ALIGNED real sums[9*LANES];
+    ALIGNED real o_ups[5*LANES];
     clear(sums, 9*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_ups(m, LANES, i, k, k, LANES, 1, X, V, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, sums, M, Z, t);
     }
@@ -1605,22 +1665,14 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
     stage_ups_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.ups_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.ups_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.ups_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.ups_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.ups_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.ups_Q_zz);  /* M_tt_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_sums_ups(k, count, add, &v, terms);
+    any_singular_ups(k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, status_flags
     *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
@@ -1647,6 +1699,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
     real sums[6] CLEARED;
     real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     }
@@ -1662,17 +1715,20 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real sums[6*LANES];
-    real o_ups[LANES];
+    ALIGNED real sums[6*LANES];
+    ALIGNED real o_ups[LANES];
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_ups(m, LANES, i, k, k, LANES, 1, X, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, sums, M, t);
     }
@@ -1686,19 +1742,14 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_ups_X(m, w, i, j, X, &v);
     stage_ups_V_X(m, w, i, j, V, &v);
     stage_ups_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_sums_ups_2(k, count, add, &v, terms);
+    any_singular_ups(k, &v, o);
 }
 
 INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, real *Z, status_flags
     *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = m->Z_p_x + Z_t_x_of_legs;
     const real Z_t_y_of_legs = sums[1*w + k];
@@ -1716,6 +1767,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 {
     real sums[3] CLEARED;
     real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     }
@@ -1731,17 +1783,20 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real sums[3*LANES];
-    real o_ups[LANES];
+    ALIGNED real sums[3*LANES];
+    ALIGNED real o_ups[LANES];
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_ups(m, LANES, i, k, k, LANES, 1, X, V, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups_2(k, k, LANES, o_ups, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(m, LANES, k, sums, Z, t);
     }
@@ -1753,18 +1808,16 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
+    any_entries_ups(k, count, &v, o);
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     o[4*count + k] = v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         H_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, o_ups);
     }
@@ -1776,11 +1829,13 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real o_ups[5*LANES];
+    ALIGNED real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_ups(m, LANES, i, k, k, LANES, X, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
@@ -1823,17 +1878,12 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t i, size_t j, s
         v.axis_x_ups_axes2_y*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_y*v.ups_c_in_axes2_z;
     const real ups_c_z = v.axis_y_ups_axes2_z*v.ups_c_in_axes2_y -
         v.axis_x_ups_axes2_z*v.ups_phi_3_in_axes2_x + v.axis_z_ups_axes2_z*v.ups_c_in_axes2_z;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_entries_ups(k, count, &v, o);
+    any_singular_ups(k, &v, o + 3*count);
 }
 
 INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -1847,7 +1897,7 @@ INLINE void required_place_ups(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[0*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -1869,6 +1919,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     real s[3] CLEARED, sums[3] CLEARED;
     real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             required_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups,
                 o_ups);
@@ -1887,20 +1938,24 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    real s[3*LANES], sums[3*LANES];
-    real o_ups[4*LANES];
+    ALIGNED real s[3*LANES], sums[3*LANES];
+    ALIGNED real o_ups[4*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_between(m, LANES, k, A, s);
     }
     clear(sums, 3*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_ups(m, LANES, i, k, k, LANES, 1, X, V, A, sums, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_ups(LANES, i, k, k, LANES, o_ups, H, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -1912,8 +1967,14 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
+    /* (ups-S) from the base point to the connection point */
+    const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
+        v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
+        v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
     /* (ups-q_1) displacement of joint 1 */
-    const real ups_q_1 = angle(v.ups_s_1, v.ups_c_1);
+    const real ups_q_1 = angle(v.inv_ups_root_1*ups_S_in_turn1_y,
+        v.inv_ups_root_1*ups_S_in_turn1_x);
     /* (ups-q_2) displacement of joint 2 */
     const real ups_q_2 = angle(-v.ups_e_1_in_axes2_x, v.ups_c_2);
     /* (ups-q_1) */
@@ -1922,9 +1983,9 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = ups_q_2;
     /* (ups-q_3) displacement of joint 3 */
     o[2*count + k] = v.ups_q_3;
+    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t_4) > LEAST_1) +
+        UNLESS(magnitude(v.ups_q_3_t_2) > LEAST_1);
     o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
 }
 
 INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -1940,6 +2001,7 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         inverse_kinematics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, o_ups);
     }
@@ -1951,11 +2013,13 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real o_ups[5*LANES];
+    ALIGNED real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_ups(m, LANES, i, k, k, LANES, X, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_ups(LANES, i, k, k, LANES, o_ups, q, t);
         }
@@ -1975,10 +2039,8 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.ups_qd_2;
     /* (ups-qd_3) rate of joint 3 */
     o[2*count + k] = v.ups_S_dot_in_axes2_x;
+    any_singular_ups(k, &v, o + 3*count);
     o[4*count + k] = v.ups_qd_1 + (v.ups_qd_2 + v.ups_S_dot_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -1995,6 +2057,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_rates_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, V, o_ups);
     }
@@ -2006,11 +2069,13 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real o_ups[5*LANES];
+    ALIGNED real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_ups(m, LANES, i, k, k, LANES, X, V, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_ups(LANES, i, k, k, LANES, o_ups, qd, t);
         }
@@ -2034,10 +2099,8 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.ups_qdd_2;
     /* (ups-qdd_3) acceleration of joint 3 */
     o[2*count + k] = ups_rel_in_axes2_x;
+    any_singular_ups(k, &v, o + 3*count);
     o[4*count + k] = v.ups_qdd_1 + (v.ups_qdd_2 + ups_rel_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -2054,6 +2117,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real *qdd, status_flags *t)
 {
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         joint_accelerations_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     }
@@ -2065,11 +2129,13 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real o_ups[5*LANES];
+    ALIGNED real o_ups[5*LANES];
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_ups(m, LANES, i, k, k, LANES, X, V, A, o_ups);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_ups(LANES, i, k, k, LANES, o_ups, qdd, t);
         }
@@ -2114,9 +2180,7 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = v.axis_x_ups_axes2_x;
     o[4*count + k] = v.axis_x_ups_axes2_y;
     o[5*count + k] = v.axis_x_ups_axes2_z;
-    o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
+    any_singular_ups(k, &v, o + 6*count);
 }
 
 INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -2136,6 +2200,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 {
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             legs_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), X, V, A, o_ups);
         }
@@ -2163,21 +2228,47 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
 {
     values_ups v;
     stage_ups_X(m, w, i, j, X, &v);
+    /* (ups-S) from the base point to the connection point */
+    const real ups_S_in_turn1_x = v.ups_S_x*m->ups_base_frame_xx[i] +
+        v.ups_S_y*m->ups_base_frame_yx[i] + v.ups_S_z*m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_y = v.ups_S_x*m->ups_base_frame_xy[i] +
+        v.ups_S_y*m->ups_base_frame_yy[i] + v.ups_S_z*m->ups_base_frame_zy[i];
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_root_1_2 = m->ups_branch_1[i]*root(ups_root_1_t_5);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ups_root_1_2 = 1/ups_root_1_2;
+    const real ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t_3 = v.ups_q_3_t + ups_root_1_t_5;
+    const real ups_q_3_2 = m->ups_branch_2[i]*root(ups_q_3_t_3);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ups_q_3_2 = 1/ups_q_3_2;
+    const real ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2;
+    /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
+    const real ups_s_2_t = inv_ups_q_3_2*v.ups_S_in_turn1_z;
     /* (potential) */
-    const real ups_potential_t_4 = v.ups_c_1*m->ups_potential_t[i] +
-        m->ups_potential_t_2[i]*v.ups_s_1;
-    const real ups_potential_t_5 = v.ups_g_in_axes2_y*(m->ups_h_2_in_spec2_z[i] +
-        m->ups_h_3_in_spec2_z[i] -
-        m->ups_link2_mass[i]*(v.ups_e_1_in_axes2_x*ups_potential_t_4 -
-        v.ups_c_2*m->ups_potential_t_3[i])) - v.ups_g_in_axes2_z*(m->ups_h_2_in_spec2_y[i] +
-        m->ups_h_3_in_spec2_y[i] + m->ups_link2_mass[i]*(v.ups_c_1*m->ups_potential_t_2[i] -
-        m->ups_potential_t[i]*v.ups_s_1)) - v.ups_g_in_axes2_x*(m->ups_h_2_in_spec2_x[i] +
-        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(v.ups_c_2*ups_potential_t_4 +
-        v.ups_e_1_in_axes2_x*m->ups_potential_t_3[i]));
+    const real ups_potential_t_7 = ups_c_1*m->ups_potential_t[i] +
+        m->ups_potential_t_2[i]*ups_s_1;
+    const real ups_potential_t_8 = ups_c_1*m->ups_potential_t_4[i] +
+        m->ups_potential_t_5[i]*ups_s_1;
+    const real ups_potential_t_9 = (ups_potential_t_7*ups_s_2_t -
+        ups_c_2_2*m->ups_potential_t_3[i])*(m->ups_h_2_in_spec2_z[i] +
+        m->ups_h_3_in_spec2_z[i] - m->ups_link2_mass[i]*(ups_potential_t_8*ups_s_2_t -
+        ups_c_2_2*m->ups_potential_t_6[i])) - (ups_c_1*m->ups_potential_t_2[i] -
+        m->ups_potential_t[i]*ups_s_1)*(m->ups_h_2_in_spec2_y[i] + m->ups_h_3_in_spec2_y[i] +
+        m->ups_link2_mass[i]*(ups_c_1*m->ups_potential_t_5[i] -
+        m->ups_potential_t_4[i]*ups_s_1)) - (ups_c_2_2*ups_potential_t_7 +
+        m->ups_potential_t_3[i]*ups_s_2_t)*(m->ups_h_2_in_spec2_x[i] +
+        m->ups_h_3_in_spec2_x[i] + m->ups_link2_mass[i]*(ups_c_2_2*ups_potential_t_8 +
+        m->ups_potential_t_6[i]*ups_s_2_t));
     /* (potential) */
-    gather(&terms[0*count + k], add, ups_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
+    gather(&terms[0*count + k], add, ups_potential_t_9);  /* potential_of_legs */
+    o[0*count + k] = UNLESS(magnitude(ups_root_1_t_5) > LEAST_1) +
+        UNLESS(magnitude(ups_q_3_t_3) > LEAST_1);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -2195,6 +2286,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     real s[1] CLEARED, sums[1] CLEARED;
     real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
+        IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
             potential_legs_ups(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
         }
@@ -2225,13 +2317,13 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
     stage_ups_X(m, w, i, j, X, &v);
     /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real ups_pivot_size = magnitude(v.ups_root_1_t);
-    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+    const real ups_pivot_size = magnitude(v.ups_root_1_t_4);
+    const real ups_pivot_size_2 = magnitude(v.ups_q_3_t_2);
     const real ups_pivot_size_3 = magnitude(v.ups_root_1);
     const real ups_pivot_size_4 = magnitude(v.ups_q_3);
     const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
         R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real ups_spread_t = m->b_c_in_platform_x - m->ups_platform_point_x[i];
     const real ups_spread_t_2 = m->b_c_in_platform_y - m->ups_platform_point_y[i];
     const real ups_spread_t_3 = m->b_c_in_platform_z - m->ups_platform_point_z[i];
@@ -2239,17 +2331,12 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t i, size_t j, 
         ups_spread_t_3*ups_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
-    /* (ups-w_3) reciprocal vector 3 */
-    o[0*count + k] = v.axis_x_ups_axes2_x;
-    o[1*count + k] = v.axis_x_ups_axes2_y;
-    o[2*count + k] = v.axis_x_ups_axes2_z;
+    any_entries_ups(k, count, &v, o);
     /* (ups-G) */
     o[3*count + k] = ups_least_pivots;
+    any_singular_ups(k, &v, o + 4*count);
     o[5*count + k] = (v.axis_x_ups_axes2_x + v.axis_x_ups_axes2_y) + (v.axis_x_ups_axes2_z +
         ups_least_pivots);
-    o[4*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
-        UNLESS(magnitude(v.ups_q_3) > LEAST_2);
 }
 
 INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2266,7 +2353,7 @@ INLINE void condition_place_ups(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_ups = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_ups);
     /* (spread) */
@@ -2281,6 +2368,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     condition_before(m, 1, 0, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         condition_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     }
@@ -2309,8 +2397,8 @@ int tripod_3ups_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -2332,8 +2420,8 @@ int tripod_3ups_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2356,8 +2444,8 @@ int tripod_3ups_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -2379,8 +2467,8 @@ int tripod_3ups_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -2403,8 +2491,8 @@ int tripod_3ups_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2429,8 +2517,8 @@ int tripod_3ups_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2460,8 +2548,8 @@ int tripod_3ups_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2475,6 +2563,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_3(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -2551,15 +2640,16 @@ int tripod_3ups_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], subtract_1[NV*LANES], tau[NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -2604,10 +2694,10 @@ int tripod_3ups_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES],
-        A[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], times_1[NV*LANES] = {0}, add_1[NV*LANES],
+        subtract_1[NV*LANES], A[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -2615,9 +2705,11 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }

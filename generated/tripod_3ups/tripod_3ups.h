@@ -99,16 +99,16 @@ typedef struct {
     tripod_3ups_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
             ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
             ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
-            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
-            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
-            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
-            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
-            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
-            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
-            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
-            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
-            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
-            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
+            ups_Sigma_2_in_axes2_zz[4], ups_base_frame_xx[4], ups_base_frame_xy[4],
+            ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4], ups_base_frame_yz[4],
+            ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4], ups_base_point_x[4],
+            ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4], ups_branch_2[4],
+            ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4], ups_h_2_in_spec2_z[4],
+            ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4], ups_h_3_in_spec2_z[4],
+            ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4], ups_h_group_2_in_axes2_z[4],
+            ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
+            ups_platform_point_z[4], ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4],
+            ups_potential_t_4[4], ups_potential_t_5[4], ups_potential_t_6[4];
     tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,
             gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star,
             spread_t;
@@ -128,39 +128,39 @@ extern const char *const tripod_3ups_ACTUATOR_NAMES[TRIPOD_3UPS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *model);
 
-/* Inertia matrix M. 258 mul, 183 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 246 mul, 174 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3ups_M(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *M);
 size_t tripod_3ups_M_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
     tripod_3ups_real *M, int *status);
 
-/* Velocity and gravity terms Z. 339 mul, 237 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 330 mul, 234 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3ups_Z(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *Z);
 size_t tripod_3ups_Z_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
     const tripod_3ups_real *V, tripod_3ups_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 48 mul, 42 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 51 mul, 42 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tripod_3ups_H(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *H);
 size_t tripod_3ups_H_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
     tripod_3ups_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 54 mul, 42 add, 6
+/* Displacements q of all joints. They are those of the assembly branch of home. 75 mul, 54 add, 6
    div, 6 sqrt, 6 trig. In: X (NQ). Out: q (NJ). */
 int tripod_3ups_inverse_kinematics(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *q);
 size_t tripod_3ups_inverse_kinematics_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *q, int *status);
 
-/* Rates of all joints. 126 mul, 78 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 114 mul, 69 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3ups_joint_rates(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *rates);
 size_t tripod_3ups_joint_rates_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status);
 
-/* Accelerations of all joints. 201 mul, 114 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 189 mul, 105 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3ups_joint_accelerations(const tripod_3ups_model *model, const tripod_3ups_real *X,
     const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations);
@@ -168,7 +168,7 @@ size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, siz
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 498 mul, 360 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 489 mul, 357 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H);
@@ -176,7 +176,7 @@ size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, cons
     *X, const tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H,
     int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 384 mul, 291 add, 6 div, 6 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 375 mul, 288 add, 6 div, 6 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int tripod_3ups_inverse_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
@@ -186,7 +186,7 @@ size_t tripod_3ups_inverse_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
     tripod_3ups_real *wrench, tripod_3ups_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 498 mul, 360 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 489 mul, 357 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int tripod_3ups_forward_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
@@ -207,7 +207,7 @@ size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, s
     tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 390 mul, 294 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 381 mul, 291 add, 6 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int tripod_3ups_leg_reactions(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
@@ -227,7 +227,7 @@ size_t tripod_3ups_energy_batch(const tripod_3ups_model *model, size_t n, const 
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   legs. 76 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
    (3), legs (3). */
 int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *sigma, tripod_3ups_real *legs);
@@ -235,14 +235,14 @@ size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, con
     tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status);
 
 /* Manipulability of forces: the product of the singular values that condition has by default, and
-   the least over the largest of them. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values
+   the least over the largest of them. 76 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values
    apart. In: X (NQ). Out: measure (1), isotropy (1). */
 int tripod_3ups_manipulability(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *measure, tripod_3ups_real *isotropy);
 size_t tripod_3ups_manipulability_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *measure, tripod_3ups_real *isotropy, int *status);
 
-/* How near actuators and legs are to being singular: relative distances, 0 where they are. 73
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 76
    mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
    legs (1). */
 int tripod_3ups_singularity_distance(const tripod_3ups_model *model, const tripod_3ups_real *X,
@@ -265,7 +265,7 @@ int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_re
 size_t tripod_3ups_dissipation_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *dissipation, int *status);
 
-/* Generalised momentum M V. 258 mul, 183 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 246 mul, 174 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *momentum);
@@ -273,34 +273,34 @@ size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, cons
     *X, const tripod_3ups_real *V, tripod_3ups_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 54 mul, 42 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
+   where there is none. 75 mul, 54 add, 6 div, 6 sqrt, 6 trig. In: X (NQ). Out: margins (NJ). */
 int tripod_3ups_joint_margins(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *margins);
 size_t tripod_3ups_joint_margins_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 54 mul, 42 add, 6 div, 6 sqrt, 6
+/* Whether all joints are within their limits of displacement. 75 mul, 54 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: within (1). */
 int tripod_3ups_within_limits(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *within);
 size_t tripod_3ups_within_limits_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 54 mul, 42 add, 6 div, 6 sqrt, 6
+/* Displacements of the actuated joints, in the order of tau. 75 mul, 54 add, 6 div, 6 sqrt, 6
    trig. In: X (NQ). Out: q (NU). */
 int tripod_3ups_actuator_positions(const tripod_3ups_model *model, const tripod_3ups_real *X,
     tripod_3ups_real *q);
 size_t tripod_3ups_actuator_positions_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 126 mul, 78 add, 6 div, 6 sqrt, 0 trig. In:
+/* Rates of the actuated joints, in the order of tau. 114 mul, 69 add, 6 div, 6 sqrt, 0 trig. In:
    X (NQ), V (NV). Out: rates (NU). */
 int tripod_3ups_actuator_rates(const tripod_3ups_model *model, const tripod_3ups_real *X, const
     tripod_3ups_real *V, tripod_3ups_real *rates);
 size_t tripod_3ups_actuator_rates_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 201 mul, 114 add, 6 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 189 mul, 105 add, 6 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int tripod_3ups_actuator_accelerations(const tripod_3ups_model *model, const tripod_3ups_real *X,
     const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations);

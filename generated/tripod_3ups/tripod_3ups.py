@@ -505,16 +505,6 @@ def _prepare(p):
     ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
     ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
     ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-    ups_acc_3_t = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_acc_3_t_2 = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_acc_3_t_3 = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
     # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
     ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
     ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
@@ -569,14 +559,23 @@ def _prepare(p):
     ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z
     # (potential) potential energy
     ups_potential_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
+    )
+    ups_potential_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_potential_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    ups_potential_t_4 = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_potential_t_2 = (
+    ups_potential_t_5 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_potential_t_3 = (
+    ups_potential_t_6 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
@@ -603,15 +602,13 @@ def _prepare(p):
     b_c_in_platform_z = 0.3333333333333333*b_c_ups_in_platform_z
     return {
         "dynamics": (
-        (Z_p_x, Z_p_y, Z_p_z, m_star,),
+        (Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z, m_star,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
                     ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
-                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
-                    ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_Sigma_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
                     ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
                     ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
@@ -626,26 +623,23 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
                     ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
-                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xz, ups_base_frame_yz,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_x, Z_p_y, Z_p_z,),
+        (Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -655,11 +649,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -669,11 +661,9 @@ def _prepare(p):
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
@@ -695,11 +685,9 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -707,25 +695,21 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "legs": (
-        (),
+        (gravity_x, gravity_y, gravity_z,),
             (
                 (_ups,
         (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
                     ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
-                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
                     ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
                     ups_platform_point_z,),
@@ -736,14 +720,15 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
-                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
-                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
+        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x,
+                    ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+                    ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+                    ups_potential_t_6,),
                 ),
             ),
         ),
@@ -751,11 +736,9 @@ def _prepare(p):
         (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ups,
-        (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-                    ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-                    ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -1652,11 +1635,11 @@ def _at(m, function, X, given, at):
     return found
 
 
-# dynamics: 498 mul, 360 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 489 mul, 357 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
-    Z_p_x, Z_p_y, Z_p_z, m_star = shared
+    Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1684,9 +1667,7 @@ def _run_dynamics(m, X, V):
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -1696,26 +1677,23 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -1729,9 +1707,9 @@ def _run_dynamics(m, X, V):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -1781,10 +1759,15 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -1906,9 +1889,9 @@ def _run_dynamics(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -1950,7 +1933,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 258 mul, 183 add, 6 div, 6 sqrt, 0 trig
+# M: 246 mul, 174 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -1969,36 +1952,32 @@ def _run_M(m, X):
         (
         ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
             ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
-            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2009,9 +1988,9 @@ def _run_M(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
         axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
@@ -2081,9 +2060,9 @@ def _run_M(m, X):
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2109,11 +2088,11 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 339 mul, 237 add, 6 div, 6 sqrt, 0 trig
+# Z: 330 mul, 234 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
-    Z_p_x, Z_p_y, Z_p_z = shared
+    Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2135,9 +2114,7 @@ def _run_Z(m, X, V):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2147,26 +2124,23 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2180,9 +2154,9 @@ def _run_Z(m, X, V):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -2230,10 +2204,15 @@ def _run_Z(m, X, V):
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder of: inertia force of link 3 from its turning about its reference point
@@ -2299,9 +2278,9 @@ def _run_Z(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -2318,7 +2297,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 48 mul, 42 add, 3 div, 3 sqrt, 0 trig
+# H: 51 mul, 42 add, 3 div, 3 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2333,29 +2312,28 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_2,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -2363,8 +2341,9 @@ def _run_H(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) >
+            _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
@@ -2373,7 +2352,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 384 mul, 291 add, 6 div, 6 sqrt, 0 trig
+# required: 375 mul, 288 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2415,9 +2394,7 @@ def _run_required(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
@@ -2427,26 +2404,23 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2460,9 +2434,9 @@ def _run_required(m, X, V, A):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -2524,10 +2498,15 @@ def _run_required(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
         ups_phi_3_t = ups_W_2_in_axes2_xx*ups_h_3_in_spec2_x
         ups_phi_3_in_axes2_x = (
@@ -2593,9 +2572,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_phi_3_in_axes2_x
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -2616,7 +2595,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 54 mul, 42 add, 6 div, 6 sqrt, 6 trig
+# inverse_kinematics: 75 mul, 54 add, 6 div, 6 sqrt, 6 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -2651,18 +2630,20 @@ def _run_inverse_kinematics(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(ups_s_1, ups_c_1)
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2670,8 +2651,8 @@ def _run_inverse_kinematics(m, X):
         ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
         ups_q_2 = atan2(-ups_e_1_in_axes2_x, ups_c_2)
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
@@ -2682,7 +2663,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 126 mul, 78 add, 6 div, 6 sqrt, 0 trig
+# joint_rates: 114 mul, 69 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -2704,35 +2685,31 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -2743,9 +2720,9 @@ def _run_joint_rates(m, X, V):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -2765,9 +2742,9 @@ def _run_joint_rates(m, X, V):
             axis_y_ups_axes2_z*t_dot_z)
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -2778,7 +2755,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 201 mul, 114 add, 6 div, 6 sqrt, 0 trig
+# joint_accelerations: 189 mul, 105 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -2807,35 +2784,31 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2849,9 +2822,9 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -2902,9 +2875,9 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_2_t_2 = inv_ups_q_3*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_qdd_2_t)
         ups_qdd_2 = ups_qdd_2_t_2 - ups_W_2_in_axes2_xy
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -2915,10 +2888,11 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 390 mul, 294 add, 6 div, 6 sqrt, 0 trig
+# legs: 381 mul, 291 add, 6 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
+    gravity_x, gravity_y, gravity_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2947,9 +2921,7 @@ def _run_legs(m, X, V, A):
         (
         ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
             ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
-            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
             ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
             ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
             ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_link3_mass,
@@ -2959,26 +2931,23 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
+        # (ups-q_1) displacement of joint 1
         inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         ups_c_2 = inv_ups_q_3*ups_root_1
@@ -2992,9 +2961,9 @@ def _run_legs(m, X, V, A):
         axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
+        axis_z_ups_axes2_x = inv_ups_root_1*ups_root_1_t
+        axis_z_ups_axes2_y = inv_ups_root_1*ups_root_1_t_2
+        axis_z_ups_axes2_z = inv_ups_root_1*ups_root_1_t_3
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
             axis_z_ups_axes2_z*t_dot_z)
@@ -3056,10 +3025,15 @@ def _run_legs(m, X, V, A):
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        ups_g_in_axes2_x = (
+        axis_x_ups_axes2_x*gravity_x + axis_x_ups_axes2_y*gravity_y + axis_x_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_y = (
+        axis_y_ups_axes2_x*gravity_x + axis_y_ups_axes2_y*gravity_y + axis_y_ups_axes2_z*gravity_z
+        )
+        ups_g_in_axes2_z = (
+        axis_z_ups_axes2_x*gravity_x + axis_z_ups_axes2_y*gravity_y + axis_z_ups_axes2_z*gravity_z
+        )
         ups_acc_3_in_axes2_x = ups_S_ddot_in_axes2_x - ups_g_in_axes2_x
         ups_acc_3_in_axes2_y = ups_S_ddot_in_axes2_y - ups_g_in_axes2_y
         ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
@@ -3132,9 +3106,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
-            & (abs(ups_q_3) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -3169,13 +3143,14 @@ def _run_potential(m, X):
     potential_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
-            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
-            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
-            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
-            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
+        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+            ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z, ups_potential_t,
+            ups_potential_t_2, ups_potential_t_3, ups_potential_t_4, ups_potential_t_5,
+            ups_potential_t_6,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -3191,42 +3166,41 @@ def _run_potential(m, X):
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t_5 = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1_2 = ups_branch_1*sqrt(ups_root_1_t_5)
         # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        inv_ups_root_1_2 = 1.0/ups_root_1_2
+        ups_c_1 = inv_ups_root_1_2*ups_S_in_turn1_x
         # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        ups_s_1 = inv_ups_root_1_2*ups_S_in_turn1_y
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_3 = ups_q_3_t + ups_root_1_t_5
+        ups_q_3_2 = ups_branch_2*sqrt(ups_q_3_t_3)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_q_3 = 1.0/ups_q_3
-        ups_c_2 = inv_ups_q_3*ups_root_1
-        # (ups-q_2) displacement of joint 2
-        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
+        inv_ups_q_3_2 = 1.0/ups_q_3_2
+        ups_c_2_2 = inv_ups_q_3_2*ups_root_1_2
+        # (ups-s_2) sine of the angle of joint 2 from its reference direction
+        ups_s_2_t = inv_ups_q_3_2*ups_S_in_turn1_z
         # (potential) potential energy
-        ups_potential_t_4 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
-        ups_potential_t_5 = (
-        ups_g_in_axes2_y*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_4 - ups_c_2*ups_potential_t_3)) -
-            ups_g_in_axes2_x*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_4 + ups_e_1_in_axes2_x*ups_potential_t_3)) -
-            ups_g_in_axes2_z*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1))
+        ups_potential_t_7 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
+        ups_potential_t_8 = ups_c_1*ups_potential_t_4 + ups_potential_t_5*ups_s_1
+        ups_potential_t_9 = (
+        (ups_potential_t_7*ups_s_2_t - ups_c_2_2*ups_potential_t_3)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_potential_t_8*ups_s_2_t -
+            ups_c_2_2*ups_potential_t_6)) - (ups_c_1*ups_potential_t_2 -
+            ups_potential_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_5 - ups_potential_t_4*ups_s_1)) -
+            (ups_c_2_2*ups_potential_t_7 + ups_potential_t_3*ups_s_2_t)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2_2*ups_potential_t_8 +
+            ups_potential_t_6*ups_s_2_t))
         )
         ok = (
-        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
-            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups += ups_potential_t_5
+        potential_ups += ups_potential_t_9
     # (potential) potential energy
     potential = potential_ups - potential_t
     # (potential) potential energy
@@ -3234,7 +3208,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 73 mul, 69 add, 3 div, 13 sqrt, 0 trig
+# condition: 76 mul, 69 add, 3 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -3259,30 +3233,29 @@ def _run_condition(m, X):
     spread_ups, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
-            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
-            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
-            ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_base_frame_xz, ups_base_frame_yz, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
         ups_S_y = t_y + ups_platform_point_y - ups_base_point_y
         ups_S_z = t_z + ups_platform_point_z - ups_base_point_z
-        ups_S_in_turn1_x = (
-        ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
-        )
-        ups_S_in_turn1_y = (
-        ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
-        )
         ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
-        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
-        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        ups_root_1_t = ups_S_z*ups_base_frame_yz - ups_S_y*ups_base_frame_zz
+        ups_root_1_t_2 = ups_S_x*ups_base_frame_zz - ups_S_z*ups_base_frame_xz
+        ups_root_1_t_3 = ups_S_y*ups_base_frame_xz - ups_S_x*ups_base_frame_yz
+        ups_root_1_t_4 = (
+        ups_root_1_t*ups_root_1_t + ups_root_1_t_2*ups_root_1_t_2 + ups_root_1_t_3*ups_root_1_t_3
+        )
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t_4)
         # (ups-q_3) displacement of joint 3
-        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
-        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z
+        ups_q_3_t_2 = ups_q_3_t + ups_root_1_t_4
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_q_3 = 1.0/ups_q_3
         # (ups-S_dot) velocity of the connection point
@@ -3290,8 +3263,8 @@ def _run_condition(m, X):
         axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
         axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_root_1_t)
-        ups_pivot_size_2 = abs(ups_q_3_t)
+        ups_pivot_size = abs(ups_root_1_t_4)
+        ups_pivot_size_2 = abs(ups_q_3_t_2)
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
@@ -3306,8 +3279,8 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+        clear & (abs(ups_root_1_t_4) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid

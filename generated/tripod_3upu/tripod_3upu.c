@@ -33,14 +33,14 @@ enum {
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline, unused))
-#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
+#define INLINE static inline __attribute__((always_inline, unused WIDE))
+#define APART static __attribute__((noinline, unused WIDE))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
 #define APART static
 #endif
 
-/* Bytes of a vector. */
+/* Bytes of a vector; of the longest. */
 #if defined(__AVX__)
 #define VECTOR 32
 #elif defined(__SSE2__) || defined(__ARM_NEON)
@@ -48,6 +48,31 @@ enum {
 #else
 #define VECTOR 1
 #endif
+#if defined(__AVX512F__)
+#define LONGEST 64
+#else
+#define LONGEST VECTOR
+#endif
+/* Before loops whose turns, n or LANES, run side by side.  Unasked, clang takes halves of the longest
+   vectors, and unrolls short loops before it looks for vectors, so that it finds single numbers;
+   arrays on its stack it leaves across cache lines. */
+#if defined(__clang__) && VECTOR > 1 && TRIPOD_3UPU_LANES >= 4
+#pragma clang diagnostic ignored "-Wpass-failed"  /* loops that call functions of libm */
+#define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
+#define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
+#define PRAGMA(text) _Pragma(#text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
+#define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
+#define WIDE , min_vector_width(8*LONGEST)
+#define ALIGNED __attribute__((aligned(LONGEST)))
+#else
+#define IN_VECTORS(n)
+#define SHORT_IN_VECTORS
+#define WIDE
+#define ALIGNED
+#endif
+
 /* Legs of one state run side by side too, in whole vectors: some are copies, which nobody reads. */
 #define WHOLE(group, n) (((n) + (group) - 1)/(group)*(group))
 #define LEGS(n) \
@@ -163,6 +188,7 @@ typedef struct {
 
 INLINE void start(size_t w, status_flags *t)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         t->invalid[k] = t->unreachable[k] = t->singular[k] = t->diverged[k] = t->overflow[k] = 0;
         t->total[k] = 0;
@@ -189,6 +215,7 @@ INLINE int sum_is_finite(const real *x, size_t n)
     real sum[LANES] = {0};
     const size_t most = n - n%LANES;
     for (size_t i = 0; i < most; i += LANES) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             sum[k] += x[i + k];
         }
@@ -248,19 +275,22 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 }
 
 /* Add up the entries of every state. */
-INLINE void add_up(size_t size, const real *x, real *total)
+INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < LANES; ++k) {
+    IN_VECTORS(LANES)
+    for (size_t k = 0; k < LANES; ++k) {
+        for (size_t e = 0; e < size; ++e) {
             total[k] += x[e*LANES + k];
         }
     }
 }
 
 /* Input, given state by state, with its states side by side: entry e of state k at e*LANES + k. */
-INLINE const real *side_by_side(size_t size, const real *x, real *lanes, real *total)
+INLINE const real *side_by_side(size_t size, const real *restrict x, real *restrict lanes,
+    real *total)
 {
     for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             lanes[e*LANES + k] = x[size*k + e];
         }
@@ -308,10 +338,12 @@ INLINE int status_of(const status_flags *t)
 APART void status_side_by_side(const status_flags *t, int *code)
 {
     real flags[LANES];
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         flags[k] = ((t->invalid[k] + t->unreachable[k]) + (t->singular[k] + t->diverged[k]))
             + (t->total[k] - t->total[k]);
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         code[k] = flags[k] == 0 ? OK : INVALID;
     }
@@ -363,6 +395,7 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
 /* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
+    IN_VECTORS(LANES)
     for (size_t e = 0; e < size; ++e) {
         for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
@@ -886,6 +919,7 @@ APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, rea
         real *restrict other)
 {
     for (size_t j = p; j <= n; ++j) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
             pivot[j*LANES + k] = best[k] == i ? up : down;
@@ -899,17 +933,20 @@ INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
     real most[LANES], best[LANES], any = 0;
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
         best[k] = 0;
     }
     for (size_t i = p + 1; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             const real size = magnitude(a[i*row + p*LANES + k]);
             best[k] = size > most[k] ? (real)i : best[k];
             most[k] = larger(size, most[k]);
         }
     }
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < LANES; ++k) {
         any += best[k];
     }
@@ -927,14 +964,17 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             size[k] = 1/size[k];
         }
         for (size_t j = 0; j <= n; ++j) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + j*LANES + k] *= size[k];
             }
@@ -943,6 +983,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
     for (size_t p = 0; p < n; ++p) {
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
@@ -950,10 +991,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         for (size_t i = p + 1; i < n; ++i) {
             real *const other = a + i*row;
             real factor[LANES];
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 factor[k] = other[p*LANES + k]*x[p*LANES + k];
             }
             for (size_t j = p + 1; j <= n; ++j) {
+                SHORT_IN_VECTORS
                 for (size_t k = 0; k < LANES; ++k) {
                     other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
                 }
@@ -961,10 +1004,12 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = n; p-- > 0;) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < LANES; ++k) {
             x[p*LANES + k] *= a[p*row + n*LANES + k];
         }
         for (size_t i = 0; i < p; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < LANES; ++k) {
                 a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
             }
@@ -1249,6 +1294,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 {
     for (size_t i = 0; i < m; ++i) {
         for (size_t c = 0; c < p; ++c) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 real sum = 0;
                 for (size_t j = 0; j < n; ++j) {
@@ -1263,6 +1309,7 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
 INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
 {
     for (size_t e = 0; e < m*n; ++e) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[((e%n)*m + e/n)*w + k] = a[e*w + k];
         }
@@ -1274,6 +1321,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
     clear(x, w);
     for (size_t i = 0; i < n; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[k] += a[i*w + k]*b[i*w + k];
         }
@@ -1283,6 +1331,7 @@ INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 /* Half of a^T b a. */
 INLINE void half_form(size_t n, size_t w, const real *a, const real *b, real *x)
 {
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         real sum = 0;
         for (size_t i = 0; i < n; ++i) {
@@ -1309,6 +1358,7 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
 {
     check(size, w, x, flags);
     for (size_t i = 0; i < rows; ++i) {
+        SHORT_IN_VECTORS
         for (size_t k = 0; k < w; ++k) {
             x[places[i]*w + k] = R(INFINITY);
         }
@@ -1339,6 +1389,7 @@ INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
     check(size, w, a, flags);
+    SHORT_IN_VECTORS
     for (size_t k = 0; k < w; ++k) {
         x[k] = 1;
         for (size_t e = 0; e < size; ++e) {
@@ -1383,6 +1434,7 @@ INLINE void saddle(size_t n, size_t p, size_t stride, size_t w, const real *a, c
     }
     for (size_t j = 0; j < p; ++j) {
         for (size_t i = 0; i < n; ++i) {
+            SHORT_IN_VECTORS
             for (size_t k = 0; k < w; ++k) {
                 x[(n + j)*row + i*w + k] = b[(i*p + j)*w + k];
             }
@@ -1674,12 +1726,12 @@ typedef struct {
         upu_W_2_in_axes2_yz, upu_W_2_in_axes2_xz, upu_W_2_t_3, upu_W_2_in_axes2_xy, upu_u_1_x,
         upu_u_1_y, upu_u_1_z, upu_bias_t_2, upu_bias_in_axes2_z, upu_rel_o_in_axes2_z, upu_qdd_2_t,
         upu_f_3_t_2, upu_f_3_t_3, upu_f_3_t_4, upu_mu_2_t, upu_mu_2_t_2, upu_mu_2_t_3,
-        upu_S_ddot_in_axes2_x, upu_qdd_1, upu_qdd_2_t_2, upu_qdd_2_t_3, upu_qdd_2, upu_Q_xx, upu_Q_yy,
+        upu_S_ddot_in_axes2_x, upu_qdd_1, upu_qdd_2_t_2, upu_qdd_2_t_3, upu_qdd_2, upu_U_x, upu_U_y,
+        upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3, upu_c_x, upu_c_y, upu_c_z, upu_Q_xx, upu_Q_yy,
         upu_Q_zz, upu_Q_xy, upu_Q_xz, upu_Q_yz, upu_M_ta_t_3, upu_M_ta_t_4, upu_M_ta_t_5,
         upu_M_ta_t_6, upu_M_ta_t_8, upu_M_ta_t_9, upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12,
-        upu_M_aa_t, upu_M_aa_t_2, upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_x,
-        upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3, upu_gamma_c1, upu_c_x, upu_c_y,
-        upu_c_z;
+        upu_M_aa_t, upu_M_aa_t_2, upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6,
+        upu_gamma_c1;
 } values_upu;
 
 INLINE void stage_upu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
@@ -1911,87 +1963,6 @@ INLINE void stage_upu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     v->upu_qdd_2 = v->upu_qdd_2_t_3 - v->upu_W_2_in_axes2_xy;
 }
 
-INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
-{
-    /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-    const real upu_d_alpha_1_in_axes2_xz = v->inv_upu_root_1*v->upu_e_1_in_axes2_x;
-    /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-       about its reference point */
-    const real upu_d_phi_3_in_axes2_xy = v->inv_upu_q_3*m->upu_h_3_in_spec2_z[i];
-    const real upu_d_phi_3_in_axes2_yy = v->inv_upu_q_3*m->upu_h_3_in_spec2_x[i];
-    /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-       inertia and weight */
-    const real upu_d_Gamma_1_in_axes2_z =
-        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_d_alpha_1_in_axes2_xz -
-        m->upu_h_3_in_spec2_z[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_xy[i]) -
-        v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_in_axes2_xz -
-        m->upu_h_3_in_spec2_x[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yy[i] -
-        v->upu_q_3*(m->upu_link3_mass[i] + upu_d_phi_3_in_axes2_yy -
-        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i]));
-    /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-       leg's inertia and weight along all degrees of freedom */
-    const real upu_d_G_in_axes2_zz = v->inv_upu_root_1*upu_d_Gamma_1_in_axes2_z;
-    const real upu_d_G_in_axes2_yy = v->inv_upu_q_3*(m->upu_h_3_in_spec2_x[i] +
-        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_zz[i] + v->upu_q_3*(m->upu_link3_mass[i] +
-        upu_d_phi_3_in_axes2_yy));
-    const real upu_d_G_in_axes2_yz =
-        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_d_alpha_1_in_axes2_xz -
-        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i] -
-        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
-    /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-       without the mass at the connection point */
-    const real upu_d_c_in_axes2_xz = v->inv_upu_q_3*m->upu_h_3_in_spec2_y[i];
-    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real upu_Q_t = upu_d_G_in_axes2_yy - m->upu_link3_mass[i];
-    const real upu_Q_t_2 = R(0.5)*upu_Q_t;
-    const real upu_Q_t_3 = upu_d_G_in_axes2_zz - m->upu_link3_mass[i];
-    const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
-    const real upu_Q_t_5 = v->axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
-        v->axis_y_upu_axes2_x*upu_Q_t_2 + v->axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
-    const real upu_Q_t_6 = v->axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
-        v->axis_y_upu_axes2_y*upu_Q_t_2 + v->axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
-    const real upu_Q_t_7 = v->axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
-        v->axis_y_upu_axes2_z*upu_Q_t_2 + v->axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
-    const real upu_Q_t_8 = v->axis_z_upu_axes2_x*upu_Q_t_4 -
-        v->axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
-    const real upu_Q_t_9 = v->axis_z_upu_axes2_y*upu_Q_t_4 -
-        v->axis_x_upu_axes2_y*upu_d_c_in_axes2_xz;
-    const real upu_Q_t_10 = v->axis_z_upu_axes2_z*upu_Q_t_4 -
-        v->axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
-    const real upu_Q_t_11 = v->axis_y_upu_axes2_x*upu_Q_t_5 + v->axis_z_upu_axes2_x*upu_Q_t_8;
-    v->upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
-    const real upu_Q_t_12 = v->axis_y_upu_axes2_y*upu_Q_t_6 + v->axis_z_upu_axes2_y*upu_Q_t_9;
-    v->upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
-    v->upu_Q_zz = m->upu_link3_mass[i] + upu_d_G_in_axes2_yy + upu_d_G_in_axes2_zz -
-        v->upu_Q_xx - v->upu_Q_yy;
-    v->upu_Q_xy = v->axis_y_upu_axes2_x*upu_Q_t_6 + v->axis_y_upu_axes2_y*upu_Q_t_5 +
-        v->axis_z_upu_axes2_x*upu_Q_t_9 + v->axis_z_upu_axes2_y*upu_Q_t_8;
-    v->upu_Q_xz = v->axis_y_upu_axes2_x*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_5 +
-        v->axis_z_upu_axes2_x*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_8;
-    v->upu_Q_yz = v->axis_y_upu_axes2_y*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_6 +
-        v->axis_z_upu_axes2_y*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_9;
-    /* (M_ta) coupling block of M */
-    const real upu_M_ta_t = v->upu_Q_xy*v->upu_q_z;
-    const real upu_M_ta_t_2 = v->upu_Q_xz*v->upu_q_y;
-    v->upu_M_ta_t_3 = upu_M_ta_t_2 - upu_M_ta_t;
-    v->upu_M_ta_t_4 = v->upu_Q_xx*v->upu_q_z - v->upu_Q_xz*v->upu_q_x;
-    v->upu_M_ta_t_5 = v->upu_Q_xy*v->upu_q_x - v->upu_Q_xx*v->upu_q_y;
-    v->upu_M_ta_t_6 = v->upu_Q_yz*v->upu_q_y - v->upu_Q_yy*v->upu_q_z;
-    const real upu_M_ta_t_7 = v->upu_Q_yz*v->upu_q_x;
-    v->upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_7;
-    v->upu_M_ta_t_9 = v->upu_Q_yy*v->upu_q_x - v->upu_Q_xy*v->upu_q_y;
-    v->upu_M_ta_t_10 = v->upu_Q_zz*v->upu_q_y - v->upu_Q_yz*v->upu_q_z;
-    v->upu_M_ta_t_11 = v->upu_Q_xz*v->upu_q_z - v->upu_Q_zz*v->upu_q_x;
-    v->upu_M_ta_t_12 = upu_M_ta_t_7 - upu_M_ta_t_2;
-    /* (M_aa) rotational block of M */
-    v->upu_M_aa_t = v->upu_M_ta_t_10*v->upu_q_y - v->upu_M_ta_t_6*v->upu_q_z;
-    v->upu_M_aa_t_2 = v->upu_M_ta_t_11*v->upu_q_y - v->upu_M_ta_t_8*v->upu_q_z;
-    v->upu_M_aa_t_3 = v->upu_M_ta_t_12*v->upu_q_y - v->upu_M_ta_t_9*v->upu_q_z;
-    v->upu_M_aa_t_4 = v->upu_M_ta_t_4*v->upu_q_z - v->upu_M_ta_t_11*v->upu_q_x;
-    v->upu_M_aa_t_5 = v->upu_M_ta_t_5*v->upu_q_z - v->upu_M_ta_t_12*v->upu_q_x;
-    v->upu_M_aa_t_6 = v->upu_M_ta_t_9*v->upu_q_x - v->upu_M_ta_t_5*v->upu_q_y;
-}
-
 INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
 {
     /* (upu-qdd_1_o) remainder of: acceleration of joint 1 */
@@ -2075,38 +2046,6 @@ INLINE void stage_upu_Z_dynamics(const prepared *m, size_t i, values_upu *v)
     v->upu_Z_a_t_3 = v->upu_U_y*v->upu_q_x - v->upu_U_x*v->upu_q_y;
 }
 
-INLINE void stage_upu_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_upu *v)
-{
-    /* (upu-nd_m1) rate of moment direction 1 */
-    const real omega_x = V[3*w + j];
-    const real omega_y = V[4*w + j];
-    const real omega_z = V[5*w + j];
-    const real upu_omega_in_axes2_x = v->axis_x_upu_axes2_x*omega_x +
-        v->axis_x_upu_axes2_y*omega_y + v->axis_x_upu_axes2_z*omega_z;
-    const real upu_omega_in_axes2_y = v->axis_y_upu_axes2_x*omega_x +
-        v->axis_y_upu_axes2_y*omega_y + v->axis_y_upu_axes2_z*omega_z;
-    const real upu_omega_in_axes2_z = v->axis_z_upu_axes2_x*omega_x +
-        v->axis_z_upu_axes2_y*omega_y + v->axis_z_upu_axes2_z*omega_z;
-    const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
-        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
-        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x;
-    const real upu_nd_m1_in_axes2_y = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
-        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
-        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_y;
-    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-    const real upu_nu_1_t = v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y +
-        v->upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
-    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
-        v->upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(v->upu_omega_1_in_axes2_x -
-        upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
-        v->upu_qd_2)*(-v->upu_end_p1_in_axes2_y*v->upu_omega_1_in_axes2_y -
-        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x);
-    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
-    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    v->upu_gamma_c1 = v->upu_n_c_in_axes2_z*v->upu_rel_o_in_axes2_z + upu_nu_1;
-}
-
 INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
 {
     /* (upu-alpha_1) angular acceleration of link 1 */
@@ -2174,6 +2113,119 @@ INLINE void stage_upu_legs_required(const prepared *m, size_t i, values_upu *v)
         v->axis_x_upu_axes2_z*upu_f_3_in_axes2_x - v->axis_y_upu_axes2_z*upu_G_in_axes2_y;
 }
 
+INLINE void stage_upu_M_dynamics(const prepared *m, size_t i, values_upu *v)
+{
+    /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real upu_d_alpha_1_in_axes2_xz = v->inv_upu_root_1*v->upu_e_1_in_axes2_x;
+    /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real upu_d_phi_3_in_axes2_xy = v->inv_upu_q_3*m->upu_h_3_in_spec2_z[i];
+    const real upu_d_phi_3_in_axes2_yy = v->inv_upu_q_3*m->upu_h_3_in_spec2_x[i];
+    /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real upu_d_Gamma_1_in_axes2_z =
+        v->upu_e_1_in_axes2_x*(m->upu_J_group_2_in_axes2_xx[i]*upu_d_alpha_1_in_axes2_xz -
+        m->upu_h_3_in_spec2_z[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_xy[i]) -
+        v->upu_c_2*(m->upu_J_group_2_in_axes2_xy[i]*upu_d_alpha_1_in_axes2_xz -
+        m->upu_h_3_in_spec2_x[i] - v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yy[i] -
+        v->upu_q_3*(m->upu_link3_mass[i] + upu_d_phi_3_in_axes2_yy -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_z[i]));
+    /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real upu_d_G_in_axes2_zz = v->inv_upu_root_1*upu_d_Gamma_1_in_axes2_z;
+    const real upu_d_G_in_axes2_yy = v->inv_upu_q_3*(m->upu_h_3_in_spec2_x[i] +
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_zz[i] + v->upu_q_3*(m->upu_link3_mass[i] +
+        upu_d_phi_3_in_axes2_yy));
+    const real upu_d_G_in_axes2_yz =
+        v->inv_upu_q_3*(m->upu_J_group_2_in_axes2_xz[i]*upu_d_alpha_1_in_axes2_xz -
+        v->inv_upu_q_3*m->upu_J_group_2_in_axes2_yz[i] -
+        upu_d_alpha_1_in_axes2_xz*m->upu_h_3_in_spec2_y[i]*v->upu_q_3);
+    /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real upu_d_c_in_axes2_xz = v->inv_upu_q_3*m->upu_h_3_in_spec2_y[i];
+    /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real upu_Q_t = upu_d_G_in_axes2_yy - m->upu_link3_mass[i];
+    const real upu_Q_t_2 = R(0.5)*upu_Q_t;
+    const real upu_Q_t_3 = upu_d_G_in_axes2_zz - m->upu_link3_mass[i];
+    const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
+    const real upu_Q_t_5 = v->axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_x*upu_Q_t_2 + v->axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_6 = v->axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_y*upu_Q_t_2 + v->axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_7 = v->axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
+        v->axis_y_upu_axes2_z*upu_Q_t_2 + v->axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
+    const real upu_Q_t_8 = v->axis_z_upu_axes2_x*upu_Q_t_4 -
+        v->axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_9 = v->axis_z_upu_axes2_y*upu_Q_t_4 -
+        v->axis_x_upu_axes2_y*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_10 = v->axis_z_upu_axes2_z*upu_Q_t_4 -
+        v->axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
+    const real upu_Q_t_11 = v->axis_y_upu_axes2_x*upu_Q_t_5 + v->axis_z_upu_axes2_x*upu_Q_t_8;
+    v->upu_Q_xx = m->upu_link3_mass[i] + 2*upu_Q_t_11;
+    const real upu_Q_t_12 = v->axis_y_upu_axes2_y*upu_Q_t_6 + v->axis_z_upu_axes2_y*upu_Q_t_9;
+    v->upu_Q_yy = m->upu_link3_mass[i] + 2*upu_Q_t_12;
+    v->upu_Q_zz = m->upu_link3_mass[i] + upu_d_G_in_axes2_yy + upu_d_G_in_axes2_zz -
+        v->upu_Q_xx - v->upu_Q_yy;
+    v->upu_Q_xy = v->axis_y_upu_axes2_x*upu_Q_t_6 + v->axis_y_upu_axes2_y*upu_Q_t_5 +
+        v->axis_z_upu_axes2_x*upu_Q_t_9 + v->axis_z_upu_axes2_y*upu_Q_t_8;
+    v->upu_Q_xz = v->axis_y_upu_axes2_x*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_5 +
+        v->axis_z_upu_axes2_x*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_8;
+    v->upu_Q_yz = v->axis_y_upu_axes2_y*upu_Q_t_7 + v->axis_y_upu_axes2_z*upu_Q_t_6 +
+        v->axis_z_upu_axes2_y*upu_Q_t_10 + v->axis_z_upu_axes2_z*upu_Q_t_9;
+    /* (M_ta) coupling block of M */
+    const real upu_M_ta_t = v->upu_Q_xy*v->upu_q_z;
+    const real upu_M_ta_t_2 = v->upu_Q_xz*v->upu_q_y;
+    v->upu_M_ta_t_3 = upu_M_ta_t_2 - upu_M_ta_t;
+    v->upu_M_ta_t_4 = v->upu_Q_xx*v->upu_q_z - v->upu_Q_xz*v->upu_q_x;
+    v->upu_M_ta_t_5 = v->upu_Q_xy*v->upu_q_x - v->upu_Q_xx*v->upu_q_y;
+    v->upu_M_ta_t_6 = v->upu_Q_yz*v->upu_q_y - v->upu_Q_yy*v->upu_q_z;
+    const real upu_M_ta_t_7 = v->upu_Q_yz*v->upu_q_x;
+    v->upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_7;
+    v->upu_M_ta_t_9 = v->upu_Q_yy*v->upu_q_x - v->upu_Q_xy*v->upu_q_y;
+    v->upu_M_ta_t_10 = v->upu_Q_zz*v->upu_q_y - v->upu_Q_yz*v->upu_q_z;
+    v->upu_M_ta_t_11 = v->upu_Q_xz*v->upu_q_z - v->upu_Q_zz*v->upu_q_x;
+    v->upu_M_ta_t_12 = upu_M_ta_t_7 - upu_M_ta_t_2;
+    /* (M_aa) rotational block of M */
+    v->upu_M_aa_t = v->upu_M_ta_t_10*v->upu_q_y - v->upu_M_ta_t_6*v->upu_q_z;
+    v->upu_M_aa_t_2 = v->upu_M_ta_t_11*v->upu_q_y - v->upu_M_ta_t_8*v->upu_q_z;
+    v->upu_M_aa_t_3 = v->upu_M_ta_t_12*v->upu_q_y - v->upu_M_ta_t_9*v->upu_q_z;
+    v->upu_M_aa_t_4 = v->upu_M_ta_t_4*v->upu_q_z - v->upu_M_ta_t_11*v->upu_q_x;
+    v->upu_M_aa_t_5 = v->upu_M_ta_t_5*v->upu_q_z - v->upu_M_ta_t_12*v->upu_q_x;
+    v->upu_M_aa_t_6 = v->upu_M_ta_t_9*v->upu_q_x - v->upu_M_ta_t_5*v->upu_q_y;
+}
+
+INLINE void stage_upu_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_upu *v)
+{
+    /* (upu-nd_m1) rate of moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real upu_omega_in_axes2_x = v->axis_x_upu_axes2_x*omega_x +
+        v->axis_x_upu_axes2_y*omega_y + v->axis_x_upu_axes2_z*omega_z;
+    const real upu_omega_in_axes2_y = v->axis_y_upu_axes2_x*omega_x +
+        v->axis_y_upu_axes2_y*omega_y + v->axis_y_upu_axes2_z*omega_z;
+    const real upu_omega_in_axes2_z = v->axis_z_upu_axes2_x*omega_x +
+        v->axis_z_upu_axes2_y*omega_y + v->axis_z_upu_axes2_z*omega_z;
+    const real upu_nd_m1_in_axes2_x = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+        v->upu_n_m1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_x;
+    const real upu_nd_m1_in_axes2_y = v->upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+        v->upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+        v->upu_end_p1_in_axes2_z*v->upu_omega_1_in_axes2_y;
+    /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real upu_nu_1_t = v->upu_W_2_in_axes2_xz*v->upu_n_m1_in_axes2_y +
+        v->upu_W_2_in_axes2_yz*v->upu_end_p1_in_axes2_y;
+    const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+        v->upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(v->upu_omega_1_in_axes2_x -
+        upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
+        v->upu_qd_2)*(-v->upu_end_p1_in_axes2_y*v->upu_omega_1_in_axes2_y -
+        v->upu_n_m1_in_axes2_y*v->upu_omega_1_in_axes2_x);
+    const real upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2;
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    v->upu_gamma_c1 = v->upu_n_c_in_axes2_z*v->upu_rel_o_in_axes2_z + upu_nu_1;
+}
+
 INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
     status_flags *t)
 {
@@ -2199,9 +2251,94 @@ INLINE void any_before(const prepared *m, size_t w, size_t k, const real *X, val
     t->invalid[k] += UNLESS(is_finite(v->quaternion_scale)) + UNLESS(v->quaternion_scale > 0);
 }
 
+INLINE void any_sums_upu(size_t k, size_t count, int add, const values_upu *v, real *terms)
+{
+    /* (M_tt) translational block of M */
+    gather(&terms[0*count + k], add, v->upu_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->upu_Q_xy);  /* M_tt_xy */
+    gather(&terms[2*count + k], add, v->upu_Q_xz);  /* M_tt_xz */
+    gather(&terms[3*count + k], add, v->upu_Q_yy);  /* M_tt_yy_of_legs */
+    gather(&terms[4*count + k], add, v->upu_Q_yz);  /* M_tt_yz */
+    gather(&terms[5*count + k], add, v->upu_Q_zz);  /* M_tt_zz_of_legs */
+    /* (M_ta) coupling block of M */
+    gather(&terms[6*count + k], add, v->upu_M_ta_t_3);  /* M_ta_xx */
+    gather(&terms[7*count + k], add, v->upu_M_ta_t_4);  /* M_ta_xy_of_legs */
+    gather(&terms[8*count + k], add, v->upu_M_ta_t_5);  /* M_ta_xz_of_legs */
+    gather(&terms[9*count + k], add, v->upu_M_ta_t_6);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v->upu_M_ta_t_8);  /* M_ta_yy */
+    gather(&terms[11*count + k], add, v->upu_M_ta_t_9);  /* M_ta_yz_of_legs */
+    gather(&terms[12*count + k], add, v->upu_M_ta_t_10);  /* M_ta_zx_of_legs */
+    gather(&terms[13*count + k], add, v->upu_M_ta_t_11);  /* M_ta_zy_of_legs */
+    gather(&terms[14*count + k], add, v->upu_M_ta_t_12);  /* M_ta_zz */
+    /* (M_aa) rotational block of M */
+    gather(&terms[15*count + k], add, v->upu_M_aa_t);  /* M_aa_xx_of_legs */
+    gather(&terms[16*count + k], add, v->upu_M_aa_t_2);  /* M_aa_xy_of_legs */
+    gather(&terms[17*count + k], add, v->upu_M_aa_t_3);  /* M_aa_xz_of_legs */
+    gather(&terms[18*count + k], add, v->upu_M_aa_t_4);  /* M_aa_yy_of_legs */
+    gather(&terms[19*count + k], add, v->upu_M_aa_t_5);  /* M_aa_yz_of_legs */
+    gather(&terms[20*count + k], add, v->upu_M_aa_t_6);  /* M_aa_zz_of_legs */
+}
+
+INLINE void any_sums_upu_2(size_t k, size_t count, int add, const values_upu *v, real *terms)
+{
+    /* (Z_t) translational part of Z */
+    gather(&terms[0*count + k], add, v->upu_U_x);  /* Z_t_x_of_legs */
+    gather(&terms[1*count + k], add, v->upu_U_y);  /* Z_t_y_of_legs */
+    gather(&terms[2*count + k], add, v->upu_U_z);  /* Z_t_z_of_legs */
+    /* (Z_a) rotational part of Z */
+    gather(&terms[3*count + k], add, v->upu_Z_a_t);  /* Z_a_x_of_legs */
+    gather(&terms[4*count + k], add, v->upu_Z_a_t_2);  /* Z_a_y_of_legs */
+    gather(&terms[5*count + k], add, v->upu_Z_a_t_3);  /* Z_a_z_of_legs */
+}
+
+INLINE void any_entries_upu(size_t k, size_t count, const values_upu *v, real *o)
+{
+    /* (upu-w_3) force part of reciprocal wrench 3 */
+    o[0*count + k] = v->axis_x_upu_axes2_x;
+    o[1*count + k] = v->axis_x_upu_axes2_y;
+    o[2*count + k] = v->axis_x_upu_axes2_z;
+    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->upu_H_a_3_x;
+    o[4*count + k] = v->upu_H_a_3_y;
+    o[5*count + k] = v->upu_H_a_3_z;
+}
+
+INLINE void any_entries_upu_2(size_t k, size_t count, const values_upu *v, real *o)
+{
+    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
+    o[0*count + k] = v->upu_n_c_x;
+    o[1*count + k] = v->upu_n_c_y;
+    o[2*count + k] = v->upu_n_c_z;
+    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+    o[3*count + k] = v->upu_Hk_a_1_x;
+    o[4*count + k] = v->upu_Hk_a_1_y;
+    o[5*count + k] = v->upu_Hk_a_1_z;
+}
+
+INLINE void any_entries_upu_3(size_t k, size_t count, const values_upu *v, real *o)
+{
+    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+       */
+    o[0*count + k] = v->upu_gamma_c1;
+}
+
+INLINE void any_singular_upu(size_t k, const values_upu *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->upu_root_1_t) > LEAST_1) + UNLESS(magnitude(v->upu_q_3_t) >
+        LEAST_1) + UNLESS(magnitude(v->upu_q_3) > LEAST_2) + UNLESS(magnitude(v->upu_root_1) >
+        LEAST_2) + UNLESS(magnitude(v->upu_volume_c_t) > LEAST_3);
+}
+
 INLINE void any_place_upu(size_t k, size_t at, size_t count, const real *o, status_flags *t)
 {
     t->singular[k] += o[0*count + at];
+}
+
+INLINE void any_singular_upu_2(size_t k, const values_upu *v, real *o)
+{
+    o[k] = UNLESS(magnitude(v->upu_root_1_t) > LEAST_1) + UNLESS(magnitude(v->upu_q_3_t) >
+        LEAST_1) + UNLESS(magnitude(v->upu_q_3) > LEAST_2) + UNLESS(magnitude(v->upu_root_1) >
+        LEAST_2);
 }
 
 INLINE void any_before_2(const prepared *m, size_t w, size_t k, const real *X, values *v, real *s,
@@ -2268,68 +2405,19 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
-    stage_upu_M_dynamics(m, i, &v);
     stage_upu_Z_dynamics(m, i, &v);
+    stage_upu_M_dynamics(m, i, &v);
     stage_upu_constraint_bias_dynamics(w, j, V, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.upu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.upu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.upu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.upu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.upu_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.upu_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.upu_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.upu_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.upu_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.upu_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.upu_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.upu_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.upu_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.upu_M_aa_t_6);  /* M_aa_zz_of_legs */
-    /* (Z_t) translational part of Z */
-    gather(&terms[21*count + k], add, v.upu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[22*count + k], add, v.upu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[23*count + k], add, v.upu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[24*count + k], add, v.upu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[25*count + k], add, v.upu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[26*count + k], add, v.upu_Z_a_t_3);  /* Z_a_z_of_legs */
-    /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_x_upu_axes2_x;
-    o[1*count + k] = v.axis_x_upu_axes2_y;
-    o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.upu_H_a_3_x;
-    o[4*count + k] = v.upu_H_a_3_y;
-    o[5*count + k] = v.upu_H_a_3_z;
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    o[6*count + k] = v.upu_n_c_x;
-    o[7*count + k] = v.upu_n_c_y;
-    o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.upu_Hk_a_1_x;
-    o[10*count + k] = v.upu_Hk_a_1_y;
-    o[11*count + k] = v.upu_Hk_a_1_z;
-    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    o[12*count + k] = v.upu_gamma_c1;
+    any_sums_upu(k, count, add, &v, terms);
+    any_sums_upu_2(k, count, add, &v, terms + 21*count);
+    any_entries_upu(k, count, &v, o);
+    any_entries_upu_2(k, count, &v, o + 6*count);
+    any_entries_upu_3(k, count, &v, o + 12*count);
+    any_singular_upu(k, &v, o + 13*count);
     o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
         + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
         v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
         v.upu_gamma_c1)));
-    o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
 }
 
 INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2355,14 +2443,14 @@ INLINE void dynamics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t c
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
     real *M, real *Z, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -2378,7 +2466,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2397,7 +2485,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[20*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[27*w + k];
     const real Z_t_x_of_legs = sums[21*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2407,7 +2495,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_p_z = s[29*w + k];
     const real Z_t_z_of_legs = sums[23*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[24*w + k];
     const real Z_q_x = s[30*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2483,6 +2571,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     real terms_upu[27*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         dynamics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
@@ -2500,8 +2589,9 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    real s[33*LANES], sums[27*LANES];
-    real o_upu[15*LANES];
+    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real o_upu[15*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
@@ -2509,13 +2599,16 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     }
     clear(sums, 27*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             dynamics_place_upu(LANES, i, k, k, LANES, o_upu, H, Hk, constraint_bias, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         dynamics_after(m, LANES, k, s, sums, M, Z, t);
     }
@@ -2528,46 +2621,21 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_M_dynamics(m, i, &v);
-    /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v.upu_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v.upu_Q_xy);  /* M_tt_xy */
-    gather(&terms[2*count + k], add, v.upu_Q_xz);  /* M_tt_xz */
-    gather(&terms[3*count + k], add, v.upu_Q_yy);  /* M_tt_yy_of_legs */
-    gather(&terms[4*count + k], add, v.upu_Q_yz);  /* M_tt_yz */
-    gather(&terms[5*count + k], add, v.upu_Q_zz);  /* M_tt_zz_of_legs */
-    /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v.upu_M_ta_t_3);  /* M_ta_xx */
-    gather(&terms[7*count + k], add, v.upu_M_ta_t_4);  /* M_ta_xy_of_legs */
-    gather(&terms[8*count + k], add, v.upu_M_ta_t_5);  /* M_ta_xz_of_legs */
-    gather(&terms[9*count + k], add, v.upu_M_ta_t_6);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v.upu_M_ta_t_8);  /* M_ta_yy */
-    gather(&terms[11*count + k], add, v.upu_M_ta_t_9);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, v.upu_M_ta_t_10);  /* M_ta_zx_of_legs */
-    gather(&terms[13*count + k], add, v.upu_M_ta_t_11);  /* M_ta_zy_of_legs */
-    gather(&terms[14*count + k], add, v.upu_M_ta_t_12);  /* M_ta_zz */
-    /* (M_aa) rotational block of M */
-    gather(&terms[15*count + k], add, v.upu_M_aa_t);  /* M_aa_xx_of_legs */
-    gather(&terms[16*count + k], add, v.upu_M_aa_t_2);  /* M_aa_xy_of_legs */
-    gather(&terms[17*count + k], add, v.upu_M_aa_t_3);  /* M_aa_xz_of_legs */
-    gather(&terms[18*count + k], add, v.upu_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[19*count + k], add, v.upu_M_aa_t_5);  /* M_aa_yz_of_legs */
-    gather(&terms[20*count + k], add, v.upu_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
+    any_sums_upu(k, count, add, &v, terms);
+    any_singular_upu_2(k, &v, o);
 }
 
 INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums, real
     *M, status_flags *t)
 {
-    /* (M_tt) */
+    /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->platform_mass + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->platform_mass + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->platform_mass + M_tt_zz_of_legs;
-    /* (M_ta) */
+    /* (M_ta) coupling block of M */
     const real M_ta_xy_of_legs = sums[7*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
@@ -2583,7 +2651,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_zx = h_star_y + M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
-    /* (M_aa) */
+    /* (M_aa) rotational block of M */
     const real J_star_xx = s[21*w + k];
     const real M_aa_xx_of_legs = sums[15*w + k];
     const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
@@ -2659,6 +2727,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     real terms_upu[21*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         M_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
@@ -2674,21 +2743,25 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    real s[27*LANES], sums[21*LANES];
-    real o_upu[LANES];
+    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real o_upu[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
     clear(sums, 21*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             M_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, sums, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_upu(k, k, LANES, o_upu, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         M_after(m, LANES, k, s, sums, M, t);
     }
@@ -2713,22 +2786,13 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_Z_dynamics(m, i, &v);
-    /* (Z_t) translational part of Z */
-    gather(&terms[0*count + k], add, v.upu_U_x);  /* Z_t_x_of_legs */
-    gather(&terms[1*count + k], add, v.upu_U_y);  /* Z_t_y_of_legs */
-    gather(&terms[2*count + k], add, v.upu_U_z);  /* Z_t_z_of_legs */
-    /* (Z_a) rotational part of Z */
-    gather(&terms[3*count + k], add, v.upu_Z_a_t);  /* Z_a_x_of_legs */
-    gather(&terms[4*count + k], add, v.upu_Z_a_t_2);  /* Z_a_y_of_legs */
-    gather(&terms[5*count + k], add, v.upu_Z_a_t_3);  /* Z_a_z_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
+    any_sums_upu_2(k, count, add, &v, terms);
+    any_singular_upu_2(k, &v, o);
 }
 
 INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z, status_flags *t)
 {
-    /* (Z_t) */
+    /* (Z_t) translational part of Z */
     const real Z_p_x = s[18*w + k];
     const real Z_t_x_of_legs = sums[0*w + k];
     const real Z_t_x = Z_p_x + Z_t_x_of_legs;
@@ -2738,7 +2802,7 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     const real Z_p_z = s[20*w + k];
     const real Z_t_z_of_legs = sums[2*w + k];
     const real Z_t_z = Z_p_z + Z_t_z_of_legs;
-    /* (Z_a) */
+    /* (Z_a) rotational part of Z */
     const real Z_a_x_of_legs = sums[3*w + k];
     const real Z_q_x = s[21*w + k];
     const real Z_a_x = Z_q_x + Z_a_x_of_legs;
@@ -2765,6 +2829,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     real terms_upu[6*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Z_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, V, terms_upu, o_upu);
     }
@@ -2781,8 +2846,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_upu[LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_upu[LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
@@ -2790,13 +2856,16 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Z_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, sums, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             any_place_upu(k, k, LANES, o_upu, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         Z_after(LANES, k, s, sums, Z, t);
     }
@@ -2808,19 +2877,10 @@ INLINE void H_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t k
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_x_upu_axes2_x;
-    o[1*count + k] = v.axis_x_upu_axes2_y;
-    o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.upu_H_a_3_x;
-    o[4*count + k] = v.upu_H_a_3_y;
-    o[5*count + k] = v.upu_H_a_3_z;
+    any_entries_upu(k, count, &v, o);
+    any_singular_upu_2(k, &v, o + 6*count);
     o[7*count + k] = (v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z)) +
         (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z));
-    o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o, real
@@ -2842,6 +2902,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         H_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -2853,16 +2914,19 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    real s[18*LANES];
-    real o_upu[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             H_place_upu(LANES, i, k, k, LANES, o_upu, H, t);
         }
@@ -2875,20 +2939,10 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_t 
 {
     values_upu v;
     stage_upu_X(m, w, i, j, s, X, &v);
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    o[0*count + k] = v.upu_n_c_x;
-    o[1*count + k] = v.upu_n_c_y;
-    o[2*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.upu_Hk_a_1_x;
-    o[4*count + k] = v.upu_Hk_a_1_y;
-    o[5*count + k] = v.upu_Hk_a_1_z;
+    any_entries_upu_2(k, count, &v, o);
+    any_singular_upu(k, &v, o + 6*count);
     o[7*count + k] = (v.upu_n_c_x + (v.upu_n_c_y + v.upu_n_c_z)) + (v.upu_Hk_a_1_x +
         (v.upu_Hk_a_1_y + v.upu_Hk_a_1_z));
-    o[6*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
 }
 
 INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -2910,6 +2964,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         Hk_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -2921,16 +2976,19 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[8*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[8*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             Hk_place_upu(LANES, i, k, k, LANES, o_upu, Hk, t);
         }
@@ -2945,14 +3003,9 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t i, size
     stage_upu_X(m, w, i, j, s, X, &v);
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_constraint_bias_dynamics(w, j, V, &v);
-    /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-       */
-    o[0*count + k] = v.upu_gamma_c1;
+    any_entries_upu_3(k, count, &v, o);
+    any_singular_upu(k, &v, o + 1*count);
     o[2*count + k] = v.upu_gamma_c1;
-    o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
 }
 
 INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -2970,6 +3023,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
     real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraint_bias_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -2981,16 +3035,19 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[3*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[3*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_legs_upu(m, LANES, i, k, k, LANES, s, X, V, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraint_bias_place_upu(LANES, i, k, k, LANES, o_upu, constraint_bias, t);
         }
@@ -3072,11 +3129,11 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     stage_upu_V_X(m, w, i, j, V, &v);
     stage_upu_A_V_X(w, j, s, A, &v);
     stage_upu_legs_required(m, i, &v);
-    /* (R_a) moment that actuators and external wrench must give */
+    /* (R_a) */
     const real upu_R_a_t = v.upu_c_y*v.upu_q_z - v.upu_c_z*v.upu_q_y;
     const real upu_R_a_t_2 = v.upu_c_z*v.upu_q_x - v.upu_c_x*v.upu_q_z;
     const real upu_R_a_t_3 = v.upu_c_x*v.upu_q_y - v.upu_c_y*v.upu_q_x;
-    /* (R_t) force that actuators and external wrench must give */
+    /* (R_t) */
     gather(&terms[0*count + k], add, v.upu_c_x);  /* R_t_x_of_legs */
     gather(&terms[1*count + k], add, v.upu_c_y);  /* R_t_y_of_legs */
     gather(&terms[2*count + k], add, v.upu_c_z);  /* R_t_z_of_legs */
@@ -3084,26 +3141,9 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[3*count + k], add, upu_R_a_t);  /* R_a_x_of_legs */
     gather(&terms[4*count + k], add, upu_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, upu_R_a_t_3);  /* R_a_z_of_legs */
-    /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_x_upu_axes2_x;
-    o[1*count + k] = v.axis_x_upu_axes2_y;
-    o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.upu_H_a_3_x;
-    o[4*count + k] = v.upu_H_a_3_y;
-    o[5*count + k] = v.upu_H_a_3_z;
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    o[6*count + k] = v.upu_n_c_x;
-    o[7*count + k] = v.upu_n_c_y;
-    o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.upu_Hk_a_1_x;
-    o[10*count + k] = v.upu_Hk_a_1_y;
-    o[11*count + k] = v.upu_Hk_a_1_z;
-    o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
+    any_entries_upu(k, count, &v, o);
+    any_entries_upu_2(k, count, &v, o + 6*count);
+    any_singular_upu(k, &v, o + 12*count);
 }
 
 INLINE void required_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3126,7 +3166,7 @@ INLINE void required_place_upu(size_t w, size_t i, size_t k, size_t at, size_t c
 
 INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, real *required)
 {
-    /* (R_t) */
+    /* (R_t) force that actuators and external wrench must give */
     const real R_t_x_of_legs = sums[0*w + k];
     const real f_p_x = s[18*w + k];
     const real R_t_x = f_p_x - R_t_x_of_legs;
@@ -3136,7 +3176,7 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     const real R_t_z_of_legs = sums[2*w + k];
     const real f_p_z = s[20*w + k];
     const real R_t_z = f_p_z - R_t_z_of_legs;
-    /* (R_a) */
+    /* (R_a) moment that actuators and external wrench must give */
     const real R_a_x_of_legs = sums[3*w + k];
     const real mu_p_x = s[21*w + k];
     const real R_a_x = mu_p_x + R_a_x_of_legs;
@@ -3164,6 +3204,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_upu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
             required_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), 0, s, X, V, A, terms_upu,
                 o_upu);
@@ -3182,8 +3223,9 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    real s[24*LANES], sums[6*LANES];
-    real o_upu[13*LANES];
+    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real o_upu[13*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
@@ -3191,13 +3233,16 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
     }
     clear(sums, 6*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_legs_upu(m, LANES, i, k, k, LANES, 1, s, X, V, A, sums, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             required_place_upu(LANES, i, k, k, LANES, o_upu, H, Hk, t);
         }
     }
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_after(LANES, k, s, sums, required);
     }
@@ -3219,9 +3264,9 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t i, s
     o[1*count + k] = upu_q_2;
     /* (upu-q_3) displacement of joint 3 */
     o[2*count + k] = v.upu_q_3;
-    o[4*count + k] = upu_q_1 + (upu_q_2 + v.upu_q_3);
     o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
         UNLESS(magnitude(v.upu_q_3_t) > LEAST_1);
+    o[4*count + k] = upu_q_1 + (upu_q_2 + v.upu_q_3);
 }
 
 INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3240,6 +3285,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         inverse_kinematics_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3251,16 +3297,19 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             inverse_kinematics_place_upu(LANES, i, k, k, LANES, o_upu, q, t);
         }
@@ -3280,10 +3329,8 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.upu_qd_2;
     /* (upu-qd_3) rate of joint 3 */
     o[2*count + k] = v.upu_S_dot_in_axes2_x;
+    any_singular_upu_2(k, &v, o + 3*count);
     o[4*count + k] = v.upu_qd_1 + (v.upu_qd_2 + v.upu_S_dot_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3303,6 +3350,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_rates_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, o_upu);
     }
@@ -3314,16 +3362,19 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_legs_upu(m, LANES, i, k, k, LANES, s, X, V, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_rates_place_upu(LANES, i, k, k, LANES, o_upu, qd, t);
         }
@@ -3346,10 +3397,8 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.upu_qdd_2;
     /* (upu-qdd_3) acceleration of joint 3 */
     o[2*count + k] = upu_rel_in_axes2_x;
+    any_singular_upu_2(k, &v, o + 3*count);
     o[4*count + k] = v.upu_qdd_1 + (v.upu_qdd_2 + upu_rel_in_axes2_x);
-    o[3*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2);
 }
 
 INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3369,6 +3418,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         joint_accelerations_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
     }
@@ -3380,16 +3430,19 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[5*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[5*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_legs_upu(m, LANES, i, k, k, LANES, s, X, V, A, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             joint_accelerations_place_upu(LANES, i, k, k, LANES, o_upu, qdd, t);
         }
@@ -3404,8 +3457,8 @@ INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t i, size_t j
     stage_upu_X(m, w, i, j, s, X, &v);
     /* (upu-phi_c1) loop-closure residual about the constraint moment */
     o[0*count + k] = -v.upu_end_p1_in_axes2_z;
-    o[2*count + k] = v.upu_end_p1_in_axes2_z;
     o[1*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1);
+    o[2*count + k] = v.upu_end_p1_in_axes2_z;
 }
 
 INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const
@@ -3422,6 +3475,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
     real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         constraints_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), s, X, o_upu);
     }
@@ -3433,16 +3487,19 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    real s[18*LANES];
-    real o_upu[3*LANES];
+    ALIGNED real s[18*LANES];
+    ALIGNED real o_upu[3*LANES];
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before_2(m, LANES, k, X, &v, s, t);
     }
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_legs_upu(m, LANES, i, k, k, LANES, s, X, o_upu);
         }
+        IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
             constraints_place_upu(LANES, i, k, k, LANES, o_upu, constraints, t);
         }
@@ -3475,10 +3532,7 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t i, size_t j, size_
     o[9*count + k] = v.upu_n_m1_x;
     o[10*count + k] = v.upu_n_m1_y;
     o[11*count + k] = v.upu_n_m1_z;
-    o[12*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
+    any_singular_upu(k, &v, o + 12*count);
 }
 
 INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real *o,
@@ -3509,6 +3563,7 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_upu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
             legs_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), s, X, V, A, o_upu);
         }
@@ -3576,6 +3631,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
+        IN_VECTORS(BESIDE(LEGS_OF_upu))
         for (size_t k = 0; k < BESIDE(LEGS_OF_upu); ++k) {
             potential_legs_upu(m, 1, i + k, 0, i + k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu,
                 o_upu);
@@ -3626,7 +3682,7 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
     const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
         R(1.25)*root(upu_pivot_size_2)), R(1.25)*upu_pivot_size_3), R(1.25)*upu_pivot_size_4),
         R(1.5624999999999998)*upu_pivot_size_5);
-    /* (spread) rms distance of the platform points from their centroid */
+    /* (spread) */
     const real upu_spread_t = m->b_c_in_platform_x - m->upu_platform_point_x[i];
     const real upu_spread_t_2 = m->b_c_in_platform_y - m->upu_platform_point_y[i];
     const real upu_spread_t_3 = m->b_c_in_platform_z - m->upu_platform_point_z[i];
@@ -3634,32 +3690,15 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t i, size_t j, 
         upu_spread_t_3*upu_spread_t_3;
     /* (spread) */
     gather(&terms[0*count + k], add, upu_spread_t_4);  /* spread_upu */
-    /* (upu-w_3) force part of reciprocal wrench 3 */
-    o[0*count + k] = v.axis_x_upu_axes2_x;
-    o[1*count + k] = v.axis_x_upu_axes2_y;
-    o[2*count + k] = v.axis_x_upu_axes2_z;
-    /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-    o[3*count + k] = v.upu_H_a_3_x;
-    o[4*count + k] = v.upu_H_a_3_y;
-    o[5*count + k] = v.upu_H_a_3_z;
-    /* (upu-n_c) force part, zero on the manifold, of the constraint moment */
-    o[6*count + k] = v.upu_n_c_x;
-    o[7*count + k] = v.upu_n_c_y;
-    o[8*count + k] = v.upu_n_c_z;
-    /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-    o[9*count + k] = v.upu_Hk_a_1_x;
-    o[10*count + k] = v.upu_Hk_a_1_y;
-    o[11*count + k] = v.upu_Hk_a_1_z;
+    any_entries_upu(k, count, &v, o);
+    any_entries_upu_2(k, count, &v, o + 6*count);
     /* (upu-G) */
     o[12*count + k] = upu_least_pivots;
+    any_singular_upu(k, &v, o + 13*count);
     o[14*count + k] = ((v.axis_x_upu_axes2_x + (v.axis_x_upu_axes2_y + v.axis_x_upu_axes2_z))
         + (v.upu_H_a_3_x + (v.upu_H_a_3_y + v.upu_H_a_3_z))) + ((v.upu_n_c_x + (v.upu_n_c_y +
         v.upu_n_c_z)) + ((v.upu_Hk_a_1_x + v.upu_Hk_a_1_y) + (v.upu_Hk_a_1_z +
         upu_least_pivots)));
-    o[13*count + k] = UNLESS(magnitude(v.upu_root_1_t) > LEAST_1) +
-        UNLESS(magnitude(v.upu_q_3_t) > LEAST_1) + UNLESS(magnitude(v.upu_q_3) > LEAST_2) +
-        UNLESS(magnitude(v.upu_root_1) > LEAST_2) + UNLESS(magnitude(v.upu_volume_c_t) >
-        LEAST_3);
 }
 
 INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -3685,7 +3724,7 @@ INLINE void condition_place_upu(size_t w, size_t i, size_t k, size_t at, size_t 
 INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *sums, real
     *lengths, status_flags *t)
 {
-    /* (spread) */
+    /* (spread) rms distance of the platform points from their centroid */
     const real spread_upu = sums[0*w + k];
     const real spread_ = m->spread_t*root(spread_upu);
     /* (spread) */
@@ -3701,6 +3740,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
+    IN_VECTORS(LEGS(LEGS_OF_upu))
     for (size_t k = 0; k < LEGS(LEGS_OF_upu); ++k) {
         condition_legs_upu(m, 1, k, 0, k, LEGS(LEGS_OF_upu), 0, s, X, terms_upu, o_upu);
     }
@@ -3729,8 +3769,8 @@ int tripod_3upu_M(const prepared *m, const real *X, real *M_out)
 
 INLINE void M_lanes(const prepared *m, const real *X, real *M_out, int *code)
 {
-    real X_in[NQ*LANES], M[NV*NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], M[NV*NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     M_run_lanes(m, X, M, &why);
@@ -3752,8 +3792,8 @@ int tripod_3upu_Z(const prepared *m, const real *X, const real *V, real *Z_out)
 
 INLINE void Z_lanes(const prepared *m, const real *X, const real *V, real *Z_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], Z[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3776,8 +3816,8 @@ int tripod_3upu_H(const prepared *m, const real *X, real *H_out)
 
 INLINE void H_lanes(const prepared *m, const real *X, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], H[NV*NU*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], H[NV*NU*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     H_run_lanes(m, X, H, &why);
@@ -3799,8 +3839,8 @@ int tripod_3upu_Hk(const prepared *m, const real *X, real *Hk_out)
 
 INLINE void Hk_lanes(const prepared *m, const real *X, real *Hk_out, int *code)
 {
-    real X_in[NQ*LANES], Hk[NV*NC*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], Hk[NV*NC*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     Hk_run_lanes(m, X, Hk, &why);
@@ -3822,8 +3862,8 @@ int tripod_3upu_constraints(const prepared *m, const real *X, real *constraints_
 
 INLINE void constraints_lanes(const prepared *m, const real *X, real *constraints_out, int *code)
 {
-    real X_in[NQ*LANES], constraints[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], constraints[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     constraints_run_lanes(m, X, constraints, &why);
@@ -3847,8 +3887,8 @@ int tripod_3upu_constraint_bias(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3871,8 +3911,8 @@ int tripod_3upu_inverse_kinematics(const prepared *m, const real *X, real *q_out
 
 INLINE void inverse_kinematics_lanes(const prepared *m, const real *X, real *q_out, int *code)
 {
-    real X_in[NQ*LANES], q[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], q[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     inverse_kinematics_run_lanes(m, X, q, &why);
@@ -3895,8 +3935,8 @@ int tripod_3upu_joint_rates(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_lanes(const prepared *m, const real *X, const real *V, real *qd_out, int
     *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], qd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3921,8 +3961,8 @@ int tripod_3upu_joint_accelerations(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_lanes(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], qdd[NJ*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3955,9 +3995,9 @@ int tripod_3upu_dynamics(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real *M_out, real
     *Z_out, real *H_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES],
-        constraint_bias[3*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES],
+        Hk[NV*NC*LANES], constraint_bias[3*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -3973,6 +4013,7 @@ INLINE void dynamics_lanes(const prepared *m, const real *X, const real *V, real
 INLINE void eliminate_6(size_t w, size_t stride, const size_t *order, const real *sizes, const
     real *a, const real *b, real *x, real *unsure, real *total)
 {
+    IN_VECTORS(LANES)
     for (size_t k = 0; k < w; ++k) {
         real a00 = a[(order[0]*stride + 0)*w + k];
         real a01 = a[(order[0]*stride + 1)*w + k];
@@ -4177,16 +4218,17 @@ int tripod_3upu_inverse_dynamics(const prepared *m, const real *X, const real *V
 INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *wrench, real *tau_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES], required[NV*LANES],
-        H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES], beside_1[NV*NV*LANES] = {0},
-        solve_1[NV*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], A_in[NV*LANES], wrench_in[NW*LANES],
+        required[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], subtract_1[NV*LANES],
+        beside_1[NV*NV*LANES] = {0}, solve_1[NV*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
     A = side_by_side(NV, A, A_in, why.total);
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     required_run_lanes(m, X, V, A, required, H, Hk, &why);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = required[i] - wrench[i];
     }
@@ -4239,11 +4281,11 @@ int tripod_3upu_forward_dynamics(const prepared *m, const real *X, const real *V
 INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real *V, const real
     *tau, const real *wrench, real *A_out, real *lambda_out, int *code)
 {
-    real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES], M[NV*NV*LANES],
-        Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES], times_1[NV*LANES] =
-        {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES], join_1[9*LANES] = {0},
-        solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
-    status_flags why;
+    ALIGNED real X_in[NQ*LANES], V_in[NV*LANES], tau_in[NU*LANES], wrench_in[NW*LANES],
+        M[NV*NV*LANES], Z[NV*LANES], H[NV*NU*LANES], Hk[NV*NC*LANES], constraint_bias[3*LANES],
+        times_1[NV*LANES] = {0}, add_1[NV*LANES], subtract_1[NV*LANES], negative_1[3*LANES],
+        join_1[9*LANES] = {0}, solve_1[((NV + NC))*LANES], work[((NV + NC)*(PADDED(NV + NC)))*LANES];
+    ALIGNED status_flags why;
     start(LANES, &why);
     X = side_by_side(NQ, X, X_in, why.total);
     V = side_by_side(NV, V, V_in, why.total);
@@ -4251,12 +4293,15 @@ INLINE void forward_dynamics_lanes(const prepared *m, const real *X, const real 
     wrench = optional_side_by_side(NW, wrench, 0, wrench_in, why.total);
     dynamics_run_lanes(m, X, V, M, Z, H, Hk, constraint_bias, &why);
     product(NV, NU, 1, LANES, H, tau, times_1);
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         add_1[i] = times_1[i] + wrench[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < NV*LANES; ++i) {
         subtract_1[i] = add_1[i] - Z[i];
     }
+    SHORT_IN_VECTORS
     for (size_t i = 0; i < 3*LANES; ++i) {
         negative_1[i] = -constraint_bias[i];
     }
