@@ -66,6 +66,7 @@ class FunctionWriter:
         self.legs: list[tuple[Block, Routine, Routine]] = []
         self.adding = [b for b in self.parts.legs if b.sums]
         self.after = self.parts.after() if self.parts.last else None
+        self.passed, self.sums = f"PASSED_IN_{self.name}", f"SUMS_OF_{self.name}"
 
     def routines(self) -> list[tuple[str, Routine]]:
         """The parts, each with a name that says nothing of the function."""
@@ -96,7 +97,7 @@ class FunctionWriter:
         self.after = once.of(self.after) if self.after else None
         one = self._run("1", self._kind(single))
         lanes = self._run("LANES", self._kind(many)) if many else None
-        lines += one.definition()
+        lines += [*self._sizes(one), *one.definition()]
         lines += ["", *lanes.definition()] if lanes else []
         return FunctionText("\n".join(lines), one, lanes)
 
@@ -106,6 +107,13 @@ class FunctionWriter:
         Two that do more with it have it each, so that its buffers and theirs share the stack.
         """
         return "APART" if users > (1 if self.parts.summed else 2) else "INLINE"
+
+    def _sizes(self, run: Routine) -> list[str]:
+        """Sizes of what parts pass on, by name: where more is passed on, one line changes."""
+        sizes = {self.passed: len(self.parts.passed), self.sums: len(self.parts.sums)}
+        used = {n: k for n, k in sizes.items() if n in "\n".join(run.body)}
+        lines = [f"#define {name} ((size_t){size})" for name, size in used.items()]
+        return [*lines, ""] if lines else []
 
     # ---- what runs the parts -------------------------------------------------------------
 
@@ -123,8 +131,9 @@ class FunctionWriter:
         if self.after:
             body += _each(self.after, w, {"w": w})
         words = "\n".join(body)
-        sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
-        names = [n for n, k in sizes.items() if k and f" {n}" in words]
+        counts = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
+        sizes = {"s": self.passed, "sums": self.sums}
+        names = [n for n, k in counts.items() if k and f" {n}" in words]
         start = " CLEARED" * single
         real = "real " if single else "ALIGNED real "
         buffers = [f"{n}[{times(sizes[n], w)}]{start}" for n in names]
@@ -149,7 +158,7 @@ class FunctionWriter:
         buffers = [f"o_{leg}[{times(rows, width)}]{start}"] if rows else []
         if block.sums:
             every = {str(target) for target, _ in block.sums}.issuperset(sums)
-            terms = f"terms_{leg}[{times(len(sums), width)}]"
+            terms = f"terms_{leg}[{times(self.sums, width)}]"
             buffers.insert(0, terms + (start if every else " = {0}"))
         return buffers
 
@@ -207,14 +216,14 @@ class FunctionWriter:
             "}",
         ]
         return [
-            f"for (size_t n = 0; n < {len(self.parts.sums)}; ++n) {{",
+            f"for (size_t n = 0; n < {self.sums}; ++n) {{",
             *indented([line] if first else one_by_one),
             "}",
         ]
 
     def _in_turn(self) -> list[str]:
         """One leg after another, the states side by side."""
-        lines = [f"clear(sums, {times(len(self.parts.sums), 'LANES')});"] if self.adding else []
+        lines = [f"clear(sums, {times(self.sums, 'LANES')});"] if self.adding else []
         for block, over, place in self.legs:
             given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
             lines += [

@@ -48,6 +48,9 @@ def settle(
     return turned
 
 
+_LEGS = 3  # for how many a statement of legs counts, so that one leg more changes no sign
+
+
 @dataclass(frozen=True)
 class _Term:
     """What the sign of a term depends on.
@@ -169,8 +172,8 @@ class _Signs:
         return [s for s in found if s in self.form and s not in fixed]
 
     def _runs(self, statement: Statement) -> int:
-        """How often a statement runs."""
+        """How much a statement counts."""
         if not statement.stage.depends_on_state:
             return 0
         leg_type = statement.total_of or statement.stage.leg_type
-        return self.b.leg_counts[leg_type] if leg_type else 1
+        return _LEGS if leg_type else 1

@@ -46,7 +46,7 @@ def test_without_an_equation_all_are_listed() -> None:
     done = explain("planar_3rpr")
     assert done.returncode == 0
     assert (
-        "rpr-K  Inverse kinematics of a R_PR leg\n  rpr-S    rpr_S = t + rpr_q - rpr_b\n"
+        "rpr-K  Inverse kinematics of an R_PR leg\n  rpr-S    rpr_S = t + rpr_q - rpr_b\n"
         in done.stdout
     )
 
