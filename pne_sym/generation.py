@@ -12,15 +12,12 @@ from __future__ import annotations
 import contextlib
 import gc
 import json
-import multiprocessing
 import os
 import signal
 import traceback
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,10 +27,12 @@ from pne_sym.backends.target import TargetError
 from pne_sym.contents import Contents
 
 if TYPE_CHECKING:
+    from multiprocessing.context import BaseContext
+
     from pne_sym.model.manipulator import Manipulator
 
 # The compiler is imported inside the functions: it brings SymPy, and a name
-# that is misspelt should be refused before that.
+# that is misspelt should be refused before that. So are processes, which one model needs none of.
 
 
 class InputError(ValueError):
@@ -186,6 +185,9 @@ def compile_many(
 
         yield from (Compiled(item, compile_model(item, names)) for item, names in todo)
         return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
     context = _workers()
     pool = ProcessPoolExecutor(
         jobs, mp_context=context, initializer=gc.set_threshold, initargs=gc.get_threshold()
@@ -207,6 +209,8 @@ def compile_many(
 
 def _workers() -> BaseContext:
     """How workers start: where the system can, from one process that has the compiler."""
+    import multiprocessing
+
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")

@@ -17,8 +17,9 @@ import sympy as sp
 from pne_sym.backends.c_text import PRINTER, c_name
 from pne_sym.backends.waiting import WaitingPrinter, ready, ready_after
 from pne_sym.program.ir import Assignment, Function
-from pne_sym.program.slices import Slices, slices, symbols
+from pne_sym.program.slices import Slices, read_in, slices, symbols
 
+_NAME = re.compile(r"[A-Za-z_]\w*")
 _MANY = 3  # functions that need not want all of a stage
 _FEW = 4  # statements of two functions that are not worth a stage
 
@@ -85,8 +86,8 @@ class Shared:
 
     def text(self, expr: Any) -> str:
         """An expression as text."""
-        text = self.printer.text(expr)
-        return re.sub(r"[A-Za-z_]\w*", lambda n: self.texts.get(n[0], n[0]), text)
+        text, texts = self.printer.text(expr), self.texts
+        return _NAME.sub(lambda n: texts.get(n[0], n[0]), text) if texts else text
 
     def target(self, name: str) -> str:
         """What a value is assigned to: its place, or a name of its own."""
@@ -127,7 +128,7 @@ class Stages:
         made: dict[str, int] = {}
         for part, assignments in _parts(own):
             for a in assignments:
-                names = sorted(s.name for s in a.expr.free_symbols)
+                names = sorted(read_in(a.expr))
                 of = tuple((n, made[n]) for n in names if n in made)
                 statement = Statement(part, a, of)
                 number = self.numbers.setdefault(statement.key, len(self.statements))
@@ -258,17 +259,17 @@ class Stages:
 
     def with_what_they_need(self, stages: Iterable[Stage]) -> list[Stage]:
         """Stages with those that they need, of the same part."""
-        found: list[Stage] = []
+        found: dict[int, Stage] = {}
         waiting = list(stages)
         while waiting:
             stage = waiting.pop()
-            if stage in found:
+            if id(stage) in found:
                 continue
-            found.append(stage)
-            of = (n for k in stage.numbers for _, n in self.statements[k].of)
-            needed = (self.stage_of[n] for n in of if n in self.stage_of)
-            waiting += [s for s in needed if s.part == stage.part]
-        return sorted(found, key=lambda s: s.rank)
+            found[id(stage)] = stage
+            of = {n for k in stage.numbers for _, n in self.statements[k].of}
+            needed = {id(s): s for n in of if (s := self.stage_of.get(n))}
+            waiting += [s for s in needed.values() if s.part == stage.part]
+        return sorted(found.values(), key=lambda s: s.rank)
 
     def own(self, function: str, assignments: Sequence[Assignment]) -> list[Assignment]:
         """Statements that a function makes itself; names of inputs are none."""

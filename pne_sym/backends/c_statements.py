@@ -66,6 +66,8 @@ def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> lis
 
 def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:
     """Loads of what expressions read and is not yet at hand."""
+    if not loads:
+        return []
     read = loads.keys() & set[str]().union(*(read_in(sp.sympify(e)) for e in expressions))
     return [f"const real {c_name(n)} = {loads.pop(n)};" for n in sorted(read)]
 

@@ -13,6 +13,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.program.ir import Assignment, Block, Function
+from pne_sym.program.slices import read_in
 
 
 def with_common_sums(function: Function) -> Function:
@@ -23,8 +24,8 @@ def with_common_sums(function: Function) -> Function:
 def common_sums(blocks: Sequence[Block]) -> tuple[Block, ...]:
     """Blocks in which leg types add to common sums."""
     of = {t: block.leg_type for block in blocks for t, _ in block.sums}
-    read = Counter(symbol for e in _expressions(blocks) for symbol in e.free_symbols)
-    alone = {t: leg for t, leg in of.items() if read[t] == 1}
+    read = Counter(name for e in _expressions(blocks) for name in read_in(e))
+    alone = {t: leg for t, leg in of.items() if read[t.name] == 1}
     made = {a.target.name for block in blocks for a in block.assignments}
     common: dict[sp.Symbol, sp.Symbol] = {}
     kept: list[tuple[Assignment, ...]] = []
@@ -51,7 +52,8 @@ def common_sums(blocks: Sequence[Block]) -> tuple[Block, ...]:
 
 def _parts(expr: Any, alone: dict[sp.Symbol, str]) -> tuple[list[sp.Symbol], list[Any], int]:
     """Sums by leg type that an expression adds up, no two of a type; the rest; their sign."""
-    terms = () if alone.keys().isdisjoint(expr.free_symbols) else sp.Add.make_args(expr)
+    apart = not alone or alone.keys().isdisjoint(expr.free_symbols)
+    terms = () if apart else sp.Add.make_args(expr)
     for sign in (1, -1):
         parts = [sign * t for t in terms if sign * t in alone]
         if parts and len({alone[p] for p in parts}) == len(parts):

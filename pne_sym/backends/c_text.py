@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -29,6 +30,7 @@ _DIALECT = Dialect(
 )
 
 
+@lru_cache(1 << 16)
 def c_name(name: str) -> str:
     """A name of the program as a C identifier that is no keyword, macro or name of the layout.
 

@@ -70,14 +70,16 @@ class _Known:
         stage: at which it is there; None while it is forgotten.
         made: the statement that makes it; None of what is given from outside.
         needs: the made values in its statement.
+        weight: operations of its statement; None until they are asked for.
     """
 
-    __slots__ = ("made", "needs", "stage")
+    __slots__ = ("made", "needs", "stage", "weight")
 
     def __init__(self) -> None:
         self.stage: Stage | None = None
         self.made: Statement | None = None
         self.needs: tuple[_Known, ...] = ()
+        self.weight: int | None = None
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,7 @@ class Statements:
         self._value: dict[Any, Atom] = {}
         self._asked: list[Any] = []  # what values are known under, in order
         self._known: dict[sp.Symbol, _Known] = {}
+        self._parts_of: dict[Any, tuple[_Known, ...]] = {}
         self._order: list[_Known] = []  # of the statements
         self._names: set[str] = set()
         self._issued: dict[str, int] = {}
@@ -151,9 +154,13 @@ class Statements:
             known = self._known[symbol] = _Known()
         return known
 
-    def _parts(self, expr: Any) -> list[_Known]:
-        """What is known of the symbols in an expression."""
-        return [self._known[symbol] for symbol in algebra.symbols(expr)]
+    def _parts(self, expr: Any) -> tuple[_Known, ...]:
+        """What is known of the symbols in an expression; trials ask for the same ones again."""
+        parts = self._parts_of.get(expr)
+        if parts is None:
+            parts = tuple(self._known[symbol] for symbol in algebra.symbols(expr))
+            self._parts_of[expr] = parts
+        return parts
 
     # ---- values ----------------------------------------------------------------------
 
@@ -187,7 +194,7 @@ class Statements:
 
     def _place(self, known: _Known, made: Statement, needs: tuple[_Known, ...]) -> None:
         """Put a statement behind the others."""
-        known.stage, known.made, known.needs = made.stage, made, needs
+        known.stage, known.made, known.needs, known.weight = made.stage, made, needs, None
         self._order.append(known)
 
     def _remember(self, key: Any, value: Atom) -> Atom:
@@ -253,7 +260,7 @@ class Statements:
         for s in self.statements:
             made = s._replace(expr=expressions[s.target])
             known = self._known[s.target]
-            known.made = made
+            known.made, known.weight = made, None
             known.needs = tuple(part for part in self._parts(made.expr) if part.made)
         self.guards = [guard.rewritten(changes) for guard in self.guards]
 
@@ -261,9 +268,14 @@ class Statements:
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""
-        return sum(self.weight(known.made) for known in self._reach(atoms) if known.made)
+        found = 0
+        for known in self._reach(atoms):
+            if known.weight is None and known.made:
+                known.weight = self._operations(known.made)
+            found += known.weight or 0
+        return found
 
-    def weight(self, statement: Statement) -> int:
+    def _operations(self, statement: Statement) -> int:
         """Operations of a statement, over all legs; none at parameter stages."""
         if not statement.stage.depends_on_state:
             return 0
@@ -299,7 +311,7 @@ class Statements:
 
 def _joined(parts: Sequence[_Known]) -> Stage:
     """The stage of what is made of these."""
-    stages = {id(part.stage): part.stage for part in parts if part.stage}
-    if len(stages) == 1:
-        return stages.popitem()[1]
-    return algebra.joined(frozenset(stages.values()))
+    stages = [part.stage for part in parts if part.stage]
+    if stages and all(stage is stages[0] for stage in stages):
+        return stages[0]
+    return algebra.joined(frozenset(stages))
