@@ -46,6 +46,11 @@ LANES = {
     "solve": "solve({m}, {w}, {b}, work, {x}, why.singular);",
 }
 """Calls for states side by side."""
+_POSES = (
+    "rotation_of_quaternion", "quaternion_of_rotation", "angle_of_rotation", "rotation_of_angle",
+    "quaternion_of_rpy",
+)  # fmt: skip
+_TURNS = ("quaternion_rate", "turn_quaternion", "turn_between")
 SINGLE = {
     "solve": "solve_state({m}, {b}, work, {x}, why.singular);",
     "least_norm": "least_norm({m}, {n}, {a}, {b}, {x}, why.singular);",
@@ -60,14 +65,8 @@ SINGLE = {
     "why.overflow);",
     "nearest_within": "nearest_within({m}, {a}, {b}, {c}, {d}, {x}, why.unreachable, "
     "why.overflow);",
-    "rotation_of_quaternion": "rotation_of_quaternion({a}, {x});",
-    "quaternion_of_rotation": "quaternion_of_rotation({a}, {x});",
-    "angle_of_rotation": "angle_of_rotation({a}, {x});",
-    "rotation_of_angle": "rotation_of_angle({a}, {x});",
-    "quaternion_of_rpy": "quaternion_of_rpy({a}, {x});",
-    "quaternion_rate": "quaternion_rate({a}, {b}, {x});",
-    "turn_quaternion": "turn_quaternion({a}, {b}, {x});",
-    "turn_between": "turn_between({a}, {b}, {x});",
+    **{name: f"{name}({{a}}, {{x}});" for name in _POSES},
+    **{name: f"{name}({{a}}, {{b}}, {{x}});" for name in _TURNS},
 }
 """Calls for one state."""
 _BIG = ("least_norm", "resolve", "null_basis", "singular_values")

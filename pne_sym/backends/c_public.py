@@ -134,10 +134,9 @@ def _counted(bundle: Bundle, f: PublicFunction) -> str:
     """The operation counts."""
     if not f.counted:
         return ""
-    n = count_function(bundle.program.functions[f.counted], bundle.leg_counts)
+    counts = count_function(bundle.program.functions[f.counted], bundle.leg_counts).text
     apart = [f.also] if f.also else []
     apart += ["the iteration of q"] if any(a.name == "q0" for a in f.inputs) else []
-    counts = f"{n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, {n.trig} trig"
     return f"  {'; '.join((counts, *(f'{a} apart' for a in apart)))}."
 
 

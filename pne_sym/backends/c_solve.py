@@ -85,16 +85,12 @@ def _pivots(p: int, n: int) -> list[str]:
         return lines
     lines.append(f"const real d{q} = a{p}{p}*a{q}{q} - a{q}{p}*a{p}{q};")
     lines.append(f"const real f{q} = a{p}{p}/d{q};")
-    for i in range(q, n):
-        g = f"g{i}{p}"
-        lines.append(f"const real {g} = a{i}{p}*f{p};")
-        lines += [f"a{i}{j} -= {g}*a{p}{j};" for j in range(q + (i == q), n)]
-        lines.append(f"b{i} -= {g}*b{p};")
-    for i in range(q + 1, n):
-        g = f"g{i}{q}"
-        lines.append(f"const real {g} = a{i}{q}*f{q};")
-        lines += [f"a{i}{j} -= {g}*a{q}{j};" for j in range(q + 1, n)]
-        lines.append(f"b{i} -= {g}*b{q};")
+    for r in (p, q):
+        for i in range(r + 1, n):
+            g = f"g{i}{r}"
+            lines.append(f"const real {g} = a{i}{r}*f{r};")
+            lines += [f"a{i}{j} -= {g}*a{r}{j};" for j in range(r + 1 + (i == q), n)]
+            lines.append(f"b{i} -= {g}*b{r};")
     return lines
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
 
@@ -108,12 +109,8 @@ def _operations(function: Function, legs: dict[str, int]) -> dict[str, Any]:
     for block in function.blocks:
         counts = count_block(block)
         total = total + counts.times(legs.get(block.leg_type, 1))
-        blocks.append({"over": block.leg_type or "once", **_counts(counts)})
-    return {**_counts(total), "inputs": _counts(unpack), "blocks": blocks}
-
-
-def _counts(c: Counts) -> dict[str, int]:
-    return {"mul": c.mul, "add": c.add, "div": c.div, "sqrt": c.sqrt, "trig": c.trig}
+        blocks.append({"over": block.leg_type or "once", **asdict(counts)})
+    return {**asdict(total), "inputs": asdict(unpack), "blocks": blocks}
 
 
 def spec_digest(bundle: Bundle) -> str:

@@ -72,8 +72,7 @@ class FunctionText:
         math = [f"{n} = m.{n}" for n in _MATH if f"{n}(" in used]
         body = math + body + [f"return {self._status()}, {self._tuple(self._outputs())}"]
         return (
-            f"# {name}: {counts.mul} mul, {counts.add} add, {counts.div} div, "
-            f"{counts.sqrt} sqrt, {counts.trig} trig\n"
+            f"# {name}: {counts.text}\n"
             f"def _run_{name}({', '.join(('m', *self.f.inputs))}):\n"
             + textwrap.indent("\n".join(body), "    ")
         )

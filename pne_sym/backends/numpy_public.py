@@ -10,18 +10,15 @@ from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.python_public import definition, rows
 from pne_sym.backends.python_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
+from pne_sym.backends.steps import COMMON
 from pne_sym.program.ir import Program
 from pne_sym.program.public import Apply, PublicFunction, Run, Search, Step
 
 _EXPRESSIONS = {
-    "add": "{0} + {1}",
-    "subtract": "{0} - {1}",
-    "same": "{0}",
-    "negative": "-{0}",
+    **COMMON,
     "multiply": "{0} * {1}",
     "entry": "{0}[{n}]",
     "impossible": "_impossible({n}, m.states)",
-    "times": "_times({0}, {1})",
     "product": 'np.einsum("iks,kjs->ijs", {0}, {1})',
     "transposed": "np.swapaxes({0}, 0, 1)",
     "half_form": '0.5 * np.einsum("is,is->s", {0}, np.einsum("ijs,js->is", {1}, {0}))',
@@ -40,31 +37,21 @@ _EXPRESSIONS = {
     "add_forces": "_with_forces({0}, {1}, {2}, {numbers})",
     "wrap_turns": "_wrapped({0}, {numbers})",
     "unlimited": "_unlimited({0}, {numbers})",
-    "not_negative": "_not_negative({0})",
     "divide_rows": "_rows_divided({0}, {1}, {numbers})",
     "choose_length": "_chosen_length({0}, {1})",
-    "solve": "_solve({0}, {1})",
-    "saddle": "_saddle({0}, {1})",
-    "least_norm": "_least_norm({0}, {1})",
     "resolve": "_resolve({0}, {1}, {n})",
     "null_basis": "_null_basis({0}, {n})",
-    "singular_values": "_singular_values({0})",
-    "least_entry": "_least_entry({0})",
     "spread": "_spread({0}, {n})",
-    "factors_within": "_factors_within({0}, {1}, {2})",
-    "factors_of_some": "_factors_of_some({0}, {1}, {2}, {3})",
-    "nearest_within": "_nearest_within({0}, {1}, {2}, {3})",
-    "rotation_of_quaternion": "_rotation_of_quaternion({0})",
-    "quaternion_of_rotation": "_quaternion_of_rotation({0})",
-    "angle_of_rotation": "_angle_of_rotation({0})",
-    "rotation_of_angle": "_rotation_of_angle({0})",
-    "quaternion_of_rpy": "_quaternion_of_rpy({0})",
-    "quaternion_rate": "_quaternion_rate({0}, {1})",
     "turn_quaternion": "_turned({0}, {1})",
-    "turn_between": "_turn_between({0}, {1})",
 }
-"""Every operation as an expression; functions stand in templates/numpy."""
-OPERATIONS = frozenset((*_EXPRESSIONS, "search"))
+"""Operations that are more than a call of a function of their name in templates/numpy."""
+_CALLED = (
+    "times", "not_negative", "solve", "saddle", "least_norm", "singular_values", "least_entry",
+    "factors_within", "factors_of_some", "nearest_within", "rotation_of_quaternion",
+    "quaternion_of_rotation", "angle_of_rotation", "rotation_of_angle", "quaternion_of_rpy",
+    "quaternion_rate", "turn_between",
+)  # fmt: skip
+OPERATIONS = frozenset((*_EXPRESSIONS, *_CALLED, "search"))
 
 
 class Orders:
@@ -101,8 +88,7 @@ def steps_text(program: Program, function: PublicFunction, orders: Orders) -> st
     lines = []
     for step in function.steps:
         if isinstance(step, Apply):
-            solves = step.operation == "solve"
-            order = orders.named(function, step) if solves else ""
+            order = orders.named(function, step) if step.operation == "solve" else ""
             targets = ", ".join(target.name for target in step.targets)
             lines += _wrapped(f"{targets} = {applied(step, order)}")
         else:
@@ -154,7 +140,8 @@ def applied(step: Apply, order: str = "") -> str:
         return f"_straight(m, {', '.join(operands)}, {order})"
     if step.operation == "extend" and step.operands[0].shape == step.targets[0].shape:
         return operands[0]
-    return _EXPRESSIONS[step.operation].format(
+    form = _EXPRESSIONS.get(step.operation, f"_{step.operation}({', '.join(operands)})")
+    return form.format(
         *operands,
         n=(*step.numbers, 0)[0],
         numbers=list(step.numbers),

@@ -186,6 +186,11 @@ class Counts:
         """Multiplications, additions, divisions and roots (no trigonometric calls)."""
         return self.mul + self.add + self.div + self.sqrt
 
+    @property
+    def text(self) -> str:
+        """All with their names, for comments."""
+        return ", ".join(f"{n} {kind}" for kind, n in vars(self).items())
+
     def __add__(self, other: Counts) -> Counts:
         return Counts(
             self.mul + other.mul,

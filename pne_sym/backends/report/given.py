@@ -131,9 +131,9 @@ class GivenWriter:
         place = f"{body.body} and {turning.body}" if turning else body.body
         if isinstance(value, Vector):
             return place, inline(self.printer.doprint(value))
-        return place, self._components(given, quantity, value)
+        return place, self._components(quantity, value)
 
-    def _components(self, given: Given, quantity: Quantity, value: Sequence[Any]) -> str:
+    def _components(self, quantity: Quantity, value: Sequence[Any]) -> str:
         if quantity.role in _LINEAR and not self._fields(value):
             names = self._coordinates(quantity.role)
             return f"`{_LINEAR[quantity.role]}`: {_listed(value, names)}"
