@@ -1819,11 +1819,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
         + (Z_t_y + Z_t_z)));
 }
 
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[9] CLEARED;
-    real terms_rus[9*LEGS(LEGS_OF_rus)] CLEARED, o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
+    real sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rus[SUMS_OF_dynamics*LEGS(LEGS_OF_rus)] CLEARED, o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         dynamics_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
@@ -1831,7 +1833,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     dynamics_after(m, 1, 0, sums, M, Z, t);
@@ -1840,9 +1842,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real sums[9*LANES];
+    ALIGNED real sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rus[6*LANES];
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1897,10 +1899,12 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
 }
 
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[6] CLEARED;
-    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real sums[SUMS_OF_M] CLEARED;
+    real terms_rus[SUMS_OF_M*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         M_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
@@ -1908,7 +1912,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     M_after(m, 1, 0, sums, M, t);
@@ -1917,9 +1921,9 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real sums[6*LANES];
+    ALIGNED real sums[SUMS_OF_M*LANES];
     ALIGNED real o_rus[2*LANES];
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1966,10 +1970,12 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[3] CLEARED;
-    real terms_rus[3*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real sums[SUMS_OF_Z] CLEARED;
+    real terms_rus[SUMS_OF_Z*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
         Z_legs_rus(m, 1, k, 0, k, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
@@ -1977,7 +1983,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     Z_after(m, 1, 0, sums, Z, t);
@@ -1986,9 +1992,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real sums[3*LANES];
+    ALIGNED real sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rus[2*LANES];
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2121,11 +2127,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_t_z;
 }
 
+#define PASSED_IN_required ((size_t)3)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[3] CLEARED, sums[3] CLEARED;
-    real terms_rus[3*LEGS(LEGS_OF_rus)] CLEARED, o_rus[5*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rus[SUMS_OF_required*LEGS(LEGS_OF_rus)] CLEARED, o_rus[5*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
         IN_VECTORS(BESIDE(LEGS_OF_rus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
@@ -2136,7 +2145,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         required_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     required_between(m, 1, 0, A, s);
@@ -2146,13 +2155,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rus[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_between(m, LANES, k, A, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2464,10 +2473,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] CLEARED, sums[1] CLEARED;
-    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rus[SUMS_OF_potential*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
         IN_VECTORS(BESIDE(LEGS_OF_rus))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rus); ++k) {
@@ -2477,7 +2489,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     potential_between(m, 1, 0, X, s);
@@ -2550,11 +2562,13 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] CLEARED;
-    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
+    real sums[SUMS_OF_condition] CLEARED;
+    real terms_rus[SUMS_OF_condition*LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rus))
     for (size_t k = 0; k < LEGS(LEGS_OF_rus); ++k) {
@@ -2563,7 +2577,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         condition_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     condition_after(m, 1, 0, sums, lengths, t);

@@ -794,7 +794,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
         const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
@@ -845,7 +845,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
         KEEP_OF_LEG(rrr_d_Gamma_2_t);
         KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
         KEEP_OF_LEG(rrr_h_1_in_spec1_x);
         KEEP_OF_LEG(rrr_h_1_in_spec1_y);
         KEEP_OF_LEG(rrr_h_2_in_spec2_x);
@@ -1459,7 +1459,7 @@ INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values
 INLINE void stage_V_X(values *v)
 {
     /* (f_p) inertia force of the platform less its weight */
-    v->f_p_t = v->W_p_xx*v->h_star_x;
+    v->f_p_t = -v->W_p_xx*v->h_star_x;
     v->f_p_t_2 = -v->W_p_xx*v->h_star_y;
 }
 
@@ -1606,9 +1606,9 @@ INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank 
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
         axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
-        rrr_r_1_in_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x,
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
-        rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
+        rrr_a_p_y, rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_t, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
         rrr_U_x, rrr_U_y, rrr_Z_a_t, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2,
         rrr_M_aa_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
@@ -1667,9 +1667,9 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
     v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
-    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
         v->axis_y_rrr_axes2_x*m->gravity_y;
@@ -1681,7 +1681,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
         v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y + v->rrr_q_y*v->rrr_w_1_t;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -1708,20 +1708,20 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1 = rrr_S_dot_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
-        v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
     v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
     v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*v->rrr_qd_1;
-    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1*v->rrr_qd_1 -
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
         rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1740,9 +1740,9 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
     /* (rrr-qdd_1) acceleration of joint 1 */
-    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-qdd_2) acceleration of joint 2 */
     v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
@@ -1758,9 +1758,9 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y + v->rrr_bias_t;
     /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    const real rrr_B_1_o_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
     /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
@@ -1785,8 +1785,8 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real rrr_c_o_in_axes2_x = v->rrr_c_t +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
     const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
@@ -1803,25 +1803,24 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
     const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
+        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
     const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
         v->axis_x_rrr_axes2_x*rrr_Q_t_2;
@@ -1859,8 +1858,9 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_in_axes1_z);
     v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
         rrr_G_in_axes2_y;
 }
@@ -1941,7 +1941,7 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_w_1_x;
+    o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v->rrr_H_a_1_z;
@@ -1994,7 +1994,7 @@ INLINE void dynamics_between(const prepared *m, size_t w, size_t k, values *v, r
 {
     stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
@@ -2058,7 +2058,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2112,12 +2112,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)8)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[8] CLEARED, sums[9] CLEARED;
-    real terms_crank[9*LEGS(LEGS_OF_crank)] CLEARED, o_crank[9*LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_crank[SUMS_OF_dynamics*LEGS(LEGS_OF_crank)] CLEARED, o_crank[9*LEGS(LEGS_OF_crank)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_crank))
@@ -2131,13 +2135,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         dynamics_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2150,7 +2154,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    ALIGNED real s[8*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_crank[9*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
@@ -2159,7 +2163,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         dynamics_before(m, LANES, k, X, V, &v, s);
         dynamics_between(m, LANES, k, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2253,11 +2257,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)5)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[5] CLEARED, sums[6] CLEARED;
-    real terms_crank[6*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_crank[SUMS_OF_M*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_crank))
@@ -2271,13 +2278,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2288,7 +2295,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[5*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_crank[LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2296,7 +2303,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         M_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2328,7 +2335,7 @@ INLINE void Z_between(const prepared *m, size_t w, size_t k, values *v, real *s)
 {
     stage_V_X(v);
     /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = v->f_p_t - m->Z_p_t;
+    const real Z_p_x = -m->Z_p_t - v->f_p_t;
     const real Z_p_y = -m->Z_p_t_2 - v->f_p_t_2;
     /* (Z_q) gyroscopic moment and moment of the weight of the platform */
     const real Z_q_z = m->gravity_x*v->h_star_y - m->gravity_y*v->h_star_x;
@@ -2383,11 +2390,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)6)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[6] CLEARED, sums[3] CLEARED;
-    real terms_crank[3*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_crank[SUMS_OF_Z*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_crank))
@@ -2401,13 +2411,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2419,7 +2429,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_crank[LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2428,7 +2438,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before(m, LANES, k, X, V, &v, s);
         Z_between(m, LANES, k, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2486,12 +2496,14 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
+
+#define PASSED_IN_H ((size_t)3)
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -2515,7 +2527,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_crank[5*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
@@ -2567,9 +2579,11 @@ INLINE void Hk_place_crank(size_t w, size_t k, size_t at, size_t count, const re
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_Hk ((size_t)3)
+
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_Hk] CLEARED;
     real o_crank[5*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2585,7 +2599,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_Hk*LANES];
     ALIGNED real o_crank[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2633,10 +2647,12 @@ INLINE void constraint_bias_place_crank(size_t w, size_t k, size_t at, size_t co
     t->total[k] += o[2*count + at];
 }
 
+#define PASSED_IN_constraint_bias ((size_t)3)
+
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_constraint_bias] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
@@ -2652,7 +2668,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_constraint_bias*LANES];
     ALIGNED real o_crank[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2683,7 +2699,7 @@ INLINE void required_between(const prepared *m, size_t w, size_t k, const real *
     const real a_t_y = t_ddot_y - m->gravity_y;
     /* (f_p) inertia force of the platform less its weight */
     const real alpha_z = A[2*w + k];
-    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y + v->f_p_t;
+    const real f_p_x = a_t_x*m->m_star - alpha_z*v->h_star_y - v->f_p_t;
     const real f_p_y = a_t_y*m->m_star + alpha_z*v->h_star_x - v->f_p_t_2;
     /* (mu_p) inertia moment of the platform less that of its weight */
     const real mu_p_z = m->J_star_zz*alpha_z + a_t_y*v->h_star_x - a_t_x*v->h_star_y;
@@ -2788,12 +2804,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)6)
+#define SUMS_OF_required ((size_t)5)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[6] CLEARED, sums[5] CLEARED;
-    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_crank[SUMS_OF_required*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
@@ -2813,13 +2833,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         required_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2831,7 +2851,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    ALIGNED real s[6*LANES], sums[5*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_crank[7*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -2840,7 +2860,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before(m, LANES, k, X, V, &v, s);
         required_between(m, LANES, k, A, &v, s);
     }
-    clear(sums, 5*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2918,9 +2938,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)3)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -2944,7 +2966,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_crank[3*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3003,13 +3025,13 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    o[0*count + k] = v.rrr_qd_1;
+    o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3022,10 +3044,12 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)3)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3049,7 +3073,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_crank[3*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3131,10 +3155,12 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)3)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3158,7 +3184,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_crank[3*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3212,9 +3238,11 @@ INLINE void constraints_place_crank(size_t w, size_t k, size_t at, size_t count,
     t->total[k] += o[2*count + at];
 }
 
+#define PASSED_IN_constraints ((size_t)3)
+
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_constraints] CLEARED;
     real o_crank[3*LEGS(LEGS_OF_crank)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -3230,7 +3258,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_constraints*LANES];
     ALIGNED real o_crank[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3307,7 +3335,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_w_1_x;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3325,10 +3353,12 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
     t->singular[k] += o[5*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)3)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_crank[7*LEGS(LEGS_OF_crank)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
@@ -3385,7 +3415,7 @@ INLINE void potential_legs_crank(const prepared *m, size_t w, size_t i, size_t j
         m->crank_base_frame_yx[i]*crank_potential_t_3 +
         m->crank_base_frame_yy[i]*crank_potential_t_4);
     /* (potential) */
-    gather(&terms[0*count + k], add, -crank_potential_t_5);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, crank_potential_t_5);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) >
         TOLERANCE*TOLERANCE*m->crank_root_1_t[i]);
 }
@@ -3404,7 +3434,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
-    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
@@ -3414,17 +3444,20 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[3*w + k];
-    const real potential_t_2 = sums[1*w + k];
-    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)4)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[4] CLEARED, sums[2] CLEARED;
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_crank[SUMS_OF_potential*LEGS(LEGS_OF_crank)] CLEARED, o_crank[LEGS(LEGS_OF_crank)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_crank); i += BESIDE(LEGS_OF_crank)) {
@@ -3444,13 +3477,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         any_place_crank(0, i, LEGS(LEGS_OF_crank), o_crank, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3534,7 +3567,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+    o[7*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
         v.rrr_disc_1));
 }
 
@@ -3562,12 +3595,16 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)3)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[3] CLEARED, sums[2] CLEARED;
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_crank[SUMS_OF_condition*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3582,13 +3619,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     for (size_t i = 0; i < LEGS_OF_crank; ++i) {
         condition_place_crank(1, 0, i, LEGS(LEGS_OF_crank), o_crank, H, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }

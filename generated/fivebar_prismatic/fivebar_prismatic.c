@@ -1349,11 +1349,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
     t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
 }
 
+#define SUMS_OF_dynamics ((size_t)5)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] CLEARED;
-    real terms_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rpr[SUMS_OF_dynamics*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         dynamics_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
@@ -1361,7 +1363,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     dynamics_after(m, 1, 0, sums, M, Z, t);
@@ -1370,9 +1372,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real sums[5*LANES];
+    ALIGNED real sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rpr[4*LANES];
-    clear(sums, 5*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1418,10 +1420,12 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
+#define SUMS_OF_M ((size_t)3)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] CLEARED;
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real sums[SUMS_OF_M] CLEARED;
+    real terms_rpr[SUMS_OF_M*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         M_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
@@ -1429,7 +1433,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     M_after(m, 1, 0, sums, M, t);
@@ -1438,9 +1442,9 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real sums[3*LANES];
+    ALIGNED real sums[SUMS_OF_M*LANES];
     ALIGNED real o_rpr[LANES];
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1484,10 +1488,12 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
+#define SUMS_OF_Z ((size_t)2)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] CLEARED;
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real sums[SUMS_OF_Z] CLEARED;
+    real terms_rpr[SUMS_OF_Z*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rpr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rpr); ++k) {
         Z_legs_rpr(m, 1, k, 0, k, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
@@ -1495,7 +1501,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     Z_after(m, 1, 0, sums, Z, t);
@@ -1504,9 +1510,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real sums[2*LANES];
+    ALIGNED real sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rpr[LANES];
-    clear(sums, 2*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1623,11 +1629,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[1*w + k] = R_t_y;
 }
 
+#define PASSED_IN_required ((size_t)2)
+#define SUMS_OF_required ((size_t)2)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] CLEARED, sums[2] CLEARED;
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rpr[SUMS_OF_required*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
         IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
@@ -1638,7 +1647,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     required_between(m, 1, 0, A, s);
@@ -1648,13 +1657,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES], sums[2*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rpr[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_between(m, LANES, k, A, s);
     }
-    clear(sums, 2*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1941,10 +1950,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] CLEARED, sums[1] CLEARED;
-    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rpr[SUMS_OF_potential*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
         IN_VECTORS(BESIDE(LEGS_OF_rpr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rpr); ++k) {
@@ -1954,7 +1966,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     potential_between(m, 1, 0, X, s);
@@ -2016,11 +2028,13 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] CLEARED;
-    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real sums[SUMS_OF_condition] CLEARED;
+    real terms_rpr[SUMS_OF_condition*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(reach, NL);
     condition_before(m, 1, 0, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -2030,7 +2044,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         condition_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     condition_after(m, 1, 0, sums, lengths, t);

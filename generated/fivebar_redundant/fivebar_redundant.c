@@ -1608,7 +1608,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 typedef struct {
     real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t, axis_y_rrr_axes2_x,
         axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y, rrr_r_1_in_axes2_x,
-        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
         rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x,
         rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t, rrr_bias_in_axes2_x, rrr_c_t,
         rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x,
@@ -1665,7 +1665,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
@@ -1830,7 +1830,7 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 typedef struct {
     real rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_c_2, rrr_leg1_s_2_t,
         axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x, rrr_leg1_d_2_in_axes2_x,
-        rrr_leg1_r_1_in_axes2_y, rrr_leg1_r_1_in_axes2_x, inv_rrr_leg1_r_1_in_axes2_y, rrr_leg1_w_1_x,
+        rrr_leg1_r_1_in_axes2_y, rrr_leg1_r_1_in_axes2_x, inv_rrr_leg1_r_1_in_axes2_y, rrr_leg1_w_1_t,
         rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y,
         rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y, rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y,
         rrr_leg1_mu_1_t_3, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qd_1_t,
@@ -1902,7 +1902,7 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
         v->rrr_leg1_d_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
     v->inv_rrr_leg1_r_1_in_axes2_y = 1/v->rrr_leg1_r_1_in_axes2_y;
-    v->rrr_leg1_w_1_x = -v->axis_x_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_t = v->axis_x_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
     v->rrr_leg1_w_1_y = v->axis_y_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     v->rrr_leg1_w_2_in_axes2_x =
@@ -2132,7 +2132,7 @@ INLINE void any_sums_rrr_leg1_2(size_t k, size_t count, int add, const values_rr
 INLINE void any_entries_rrr_leg1(size_t k, size_t count, const values_rrr_leg1 *v, real *o)
 {
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_leg1_w_1_x;
+    o[0*count + k] = -v->rrr_leg1_w_1_t;
     o[1*count + k] = v->rrr_leg1_w_1_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     o[2*count + k] = v->rrr_leg1_w_2_x;
@@ -2157,7 +2157,7 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_w_1_x;
+    o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
 }
 
@@ -2186,7 +2186,7 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+    o[6*count + k] = (v.rrr_leg1_w_1_t + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
         v.rrr_leg1_w_2_y);
 }
 
@@ -2204,7 +2204,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    o[4*count + k] = v.rrr_w_1_t + v.rrr_w_1_y;
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -2232,13 +2232,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
     t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
 }
 
+#define SUMS_OF_dynamics ((size_t)5)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] CLEARED;
-    real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         dynamics_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
@@ -2250,13 +2252,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2267,10 +2269,10 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real sums[5*LANES];
+    ALIGNED real sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrr_leg1[7*LANES];
     ALIGNED real o_rrr[5*LANES];
-    clear(sums, 5*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2340,12 +2342,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
+#define SUMS_OF_M ((size_t)3)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] CLEARED;
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_M] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_M*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         M_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
@@ -2357,13 +2361,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2374,10 +2378,10 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real sums[3*LANES];
+    ALIGNED real sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrr_leg1[2*LANES];
     ALIGNED real o_rrr[2*LANES];
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2446,12 +2450,14 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
+#define SUMS_OF_Z ((size_t)2)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_Z] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_Z*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
         Z_legs_rrr_leg1(m, 1, k, 0, k, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
@@ -2463,13 +2469,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2480,10 +2486,10 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real sums[2*LANES];
+    ALIGNED real sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrr_leg1[2*LANES];
     ALIGNED real o_rrr[2*LANES];
-    clear(sums, 2*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2521,7 +2527,7 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+    o[6*count + k] = (v.rrr_leg1_w_1_t + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
         v.rrr_leg1_w_2_y);
 }
 
@@ -2534,7 +2540,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    o[4*count + k] = v.rrr_w_1_t + v.rrr_w_1_y;
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -2682,13 +2688,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[1*w + k] = R_t_y;
 }
 
+#define PASSED_IN_required ((size_t)2)
+#define SUMS_OF_required ((size_t)2)
+
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] CLEARED, sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_required*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
         IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
@@ -2706,13 +2715,13 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         required_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3057,7 +3066,7 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = rrr_leg1_c_true_x;
     o[1*count + k] = rrr_leg1_c_true_y;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_leg1_w_1_x;
+    o[2*count + k] = -v.rrr_leg1_w_1_t;
     o[3*count + k] = v.rrr_leg1_w_1_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     o[4*count + k] = v.rrr_leg1_w_2_x;
@@ -3103,7 +3112,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_w_1_x;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3177,7 +3186,7 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) -
         m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
-    gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
@@ -3197,7 +3206,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
-    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
@@ -3207,17 +3216,20 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[0*w + k];
-    const real potential_t_2 = sums[1*w + k];
-    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] CLEARED, sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_potential*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
         IN_VECTORS(BESIDE(LEGS_OF_rrr_leg1))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr_leg1); ++k) {
@@ -3234,13 +3246,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3285,7 +3297,7 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_w_2_x)) +
+    o[8*count + k] = (v.rrr_leg1_w_1_t + (v.rrr_leg1_w_1_y + v.rrr_leg1_w_2_x)) +
         (v.rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
 }
 
@@ -3327,7 +3339,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
+    o[6*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
 }
 
 INLINE void condition_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3353,12 +3365,15 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_condition] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_condition*LEGS(LEGS_OF_rrr_leg1)] = {0},
+        o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr_leg1); ++k) {
@@ -3371,13 +3386,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         condition_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }

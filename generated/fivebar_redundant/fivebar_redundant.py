@@ -19,6 +19,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -983,6 +984,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1001,10 +1003,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1032,10 +1034,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1086,14 +1088,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1106,35 +1107,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1144,7 +1150,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1626,7 +1633,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2068,7 +2075,7 @@ def _run_dynamics(m, X, V):
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
         inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -2200,7 +2207,7 @@ def _run_dynamics(m, X, V):
         Z_t_rrr_leg1_x += rrr_leg1_U_x
         Z_t_rrr_leg1_y += rrr_leg1_U_y
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -2258,7 +2265,7 @@ def _run_dynamics(m, X, V):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2355,7 +2362,7 @@ def _run_dynamics(m, X, V):
         Z_t_rrr_x += rrr_U_x
         Z_t_rrr_y += rrr_U_y
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrr_leg1_xx + M_tt_rrr_xx + m_star
@@ -2972,7 +2979,7 @@ def _run_H(m, X):
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
         inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -2991,7 +2998,7 @@ def _run_H(m, X):
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -3041,14 +3048,14 @@ def _run_H(m, X):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_H,)
 
@@ -3155,7 +3162,7 @@ def _run_required(m, X, V, A):
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
         inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -3260,7 +3267,7 @@ def _run_required(m, X, V, A):
         R_t_t += rrr_leg1_c_x
         R_t_t_2 += rrr_leg1_c_y
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -3317,7 +3324,7 @@ def _run_required(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
@@ -3387,7 +3394,7 @@ def _run_required(m, X, V, A):
         R_t_t_3 += rrr_c_x
         R_t_t_4 += rrr_c_y
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
     # (R_t) force that actuators and external wrench must give
     R_t_x = f_p_x - R_t_t - R_t_t_3
@@ -4001,7 +4008,7 @@ def _run_legs(m, X, V, A):
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
         inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -4113,7 +4120,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_rrr_leg1[0][leg]] = rrr_leg1_c_true_x
         out_leg_force[_leg_force_rrr_leg1[1][leg]] = rrr_leg1_c_true_y
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_actuator[_actuator_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_actuator[_actuator_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_actuator[_actuator_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_actuator[_actuator_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -4169,7 +4176,7 @@ def _run_legs(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
@@ -4246,7 +4253,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
         out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
         # (rrr-w_1) reciprocal vector 1
-        out_actuator[_actuator_rrr[0][leg]] = rrr_w_1_x
+        out_actuator[_actuator_rrr[0][leg]] = -rrr_w_1_t
         out_actuator[_actuator_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_actuator,)
 
@@ -4265,7 +4272,7 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
-    potential_rrr_leg1, = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrr_leg1_size_t, inv_rrr_leg1_size_t_2, rrr_leg1_Kd_1_t, rrr_leg1_Kd_1_t_2,
@@ -4339,8 +4346,8 @@ def _run_potential(m, X):
             (rrr_leg1_disc_1 >= 0.0)
         )
         # (potential) potential energy
-        potential_rrr_leg1 += -rrr_leg1_potential_t_3
-    potential_t_2, = [0.0] * 1
+        potential_t_2 += rrr_leg1_potential_t_3
+    potential_t_3, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -4392,9 +4399,9 @@ def _run_potential(m, X):
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
-        potential_t_2 += rrr_potential_t_3
+        potential_t_3 += rrr_potential_t_3
     # (potential) potential energy
-    potential = potential_rrr_leg1 - potential_t - potential_t_2
+    potential = -potential_t - potential_t_2 - potential_t_3
     # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -4488,7 +4495,7 @@ def _run_condition(m, X):
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
         inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = -axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
@@ -4523,7 +4530,7 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rrr_leg1 += rrr_leg1_spread_t_3
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -4578,7 +4585,7 @@ def _run_condition(m, X):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
@@ -4598,7 +4605,7 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rrr += rrr_spread_t_3
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots

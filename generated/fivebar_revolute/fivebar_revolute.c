@@ -1201,7 +1201,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 typedef struct {
     real rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t, axis_y_rrr_axes2_x,
         axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y, rrr_r_1_in_axes2_x,
-        inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
+        inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x, rrr_g_in_axes2_y,
         rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_S_ddot_in_axes2_x,
         rrr_S_ddot_in_axes2_y, rrr_qd_1_t, rrr_qd_2, rrr_bias_t, rrr_bias_in_axes2_x, rrr_c_t,
         rrr_c_t_2, rrr_qdd_1_t, rrr_qdd_2, rrr_U_x, rrr_U_y, rrr_acc_2_in_axes2_x,
@@ -1258,7 +1258,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
@@ -1448,7 +1448,7 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_w_1_x;
+    o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
 }
 
@@ -1475,7 +1475,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    o[4*count + k] = v.rrr_w_1_t + v.rrr_w_1_y;
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *sums, real *M, real
@@ -1503,11 +1503,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
     t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
 }
 
+#define SUMS_OF_dynamics ((size_t)5)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[5] CLEARED;
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         dynamics_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
@@ -1515,7 +1517,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 5; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     dynamics_after(m, 1, 0, sums, M, Z, t);
@@ -1524,9 +1526,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real sums[5*LANES];
+    ALIGNED real sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrr[5*LANES];
-    clear(sums, 5*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1573,10 +1575,12 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
 }
 
+#define SUMS_OF_M ((size_t)3)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[3] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_M] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         M_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
@@ -1584,7 +1588,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     M_after(m, 1, 0, sums, M, t);
@@ -1593,9 +1597,9 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real sums[3*LANES];
+    ALIGNED real sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrr[2*LANES];
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1640,10 +1644,12 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + Z_t_y;
 }
 
+#define SUMS_OF_Z ((size_t)2)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[2] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_Z] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
         Z_legs_rrr(m, 1, k, 0, k, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
@@ -1651,7 +1657,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     Z_after(m, 1, 0, sums, Z, t);
@@ -1660,9 +1666,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real sums[2*LANES];
+    ALIGNED real sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrr[2*LANES];
-    clear(sums, 2*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1689,7 +1695,7 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
+    o[4*count + k] = v.rrr_w_1_t + v.rrr_w_1_y;
 }
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
@@ -1782,11 +1788,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[1*w + k] = R_t_y;
 }
 
+#define PASSED_IN_required ((size_t)2)
+#define SUMS_OF_required ((size_t)2)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[2] CLEARED, sums[2] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[4*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
         IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
@@ -1797,7 +1806,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     required_between(m, 1, 0, A, s);
@@ -1807,13 +1816,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES], sums[2*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_between(m, LANES, k, A, s);
     }
-    clear(sums, 2*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2024,7 +2033,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_w_1_x;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -2099,10 +2108,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] CLEARED, sums[1] CLEARED;
-    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
         IN_VECTORS(BESIDE(LEGS_OF_rrr))
         for (size_t k = 0; k < BESIDE(LEGS_OF_rrr); ++k) {
@@ -2112,7 +2124,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     potential_between(m, 1, 0, X, s);
@@ -2152,7 +2164,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
+    o[6*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
 }
 
 INLINE void condition_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count, const real
@@ -2178,11 +2190,13 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] CLEARED;
-    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
+    real sums[SUMS_OF_condition] CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[7*LEGS(LEGS_OF_rrr)] CLEARED;
     condition_before(m, 1, 0, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rrr))
     for (size_t k = 0; k < LEGS(LEGS_OF_rrr); ++k) {
@@ -2191,7 +2205,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     condition_after(m, 1, 0, sums, lengths, t);

@@ -2470,11 +2470,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_rus[26*LEGS(LEGS_OF_rus)] CLEARED, o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rus[SUMS_OF_dynamics*LEGS(LEGS_OF_rus)] CLEARED, o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2484,7 +2487,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2494,7 +2497,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rus[9*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2502,7 +2505,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2627,10 +2630,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_rus[20*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rus[SUMS_OF_M*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2640,7 +2646,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2649,14 +2655,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rus[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2730,10 +2736,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rus[SUMS_OF_Z*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -2743,7 +2752,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2753,7 +2762,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rus[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2761,7 +2770,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2794,9 +2803,11 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rus[9*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2812,7 +2823,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rus[9*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2976,11 +2987,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rus[6*LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rus[SUMS_OF_required*LEGS(LEGS_OF_rus)] CLEARED, o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
@@ -2993,7 +3007,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         required_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3003,7 +3017,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rus[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3011,7 +3025,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3064,9 +3078,11 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3082,7 +3098,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rus[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3130,10 +3146,12 @@ INLINE void joint_rates_place_rus(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3149,7 +3167,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rus[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3198,10 +3216,12 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rus[6*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3217,7 +3237,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rus[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3286,10 +3306,12 @@ INLINE void legs_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[7*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rus[8*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3352,10 +3374,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rus[SUMS_OF_potential*LEGS(LEGS_OF_rus)] CLEARED, o_rus[2*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rus); i += BESIDE(LEGS_OF_rus)) {
@@ -3368,7 +3393,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         any_place_rus_2(0, i, LEGS(LEGS_OF_rus), o_rus, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3455,11 +3480,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_rus[LEGS(LEGS_OF_rus)] CLEARED, o_rus[11*LEGS(LEGS_OF_rus)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rus[SUMS_OF_condition*LEGS(LEGS_OF_rus)] CLEARED, o_rus[11*LEGS(LEGS_OF_rus)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rus))
@@ -3469,7 +3497,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rus; ++i) {
         condition_place_rus(1, i, 0, i, LEGS(LEGS_OF_rus), o_rus, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rus + n*LEGS(LEGS_OF_rus), LEGS_OF_rus);
     }
     condition_after(m, 1, 0, sums, lengths, t);

@@ -2171,19 +2171,19 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         v->axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
     const real ucu_M_ta_t_6 = v->axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
         v->axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
-    const real ucu_M_ta_t_7 = v->ucu_Q_xy*v->ucu_q_z;
+    const real ucu_M_ta_t_7 = -v->ucu_Q_xy*v->ucu_q_z;
     const real ucu_M_ta_t_8 = v->ucu_Q_xz*v->ucu_q_y;
     const real ucu_M_ta_t_9 = v->ucu_Q_yz*v->ucu_q_x;
-    v->ucu_M_ta_t_10 = ucu_M_ta_t_8 - v->axis_x_ucu_axes4_x*ucu_M_ta_t -
-        v->axis_z_ucu_axes4_x*ucu_M_ta_t_4 - ucu_M_ta_t_7;
+    v->ucu_M_ta_t_10 = ucu_M_ta_t_7 - v->axis_x_ucu_axes4_x*ucu_M_ta_t -
+        v->axis_z_ucu_axes4_x*ucu_M_ta_t_4 + ucu_M_ta_t_8;
     v->ucu_M_ta_t_11 = v->ucu_Q_xx*v->ucu_q_z - v->axis_x_ucu_axes4_y*ucu_M_ta_t -
         v->axis_z_ucu_axes4_y*ucu_M_ta_t_4 - v->ucu_Q_xz*v->ucu_q_x;
     v->ucu_M_ta_t_12 = v->ucu_Q_xy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t -
         v->axis_z_ucu_axes4_z*ucu_M_ta_t_4 - v->ucu_Q_xx*v->ucu_q_y;
     v->ucu_M_ta_t_13 = v->ucu_Q_yz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
         v->axis_z_ucu_axes4_x*ucu_M_ta_t_5 - v->ucu_Q_yy*v->ucu_q_z;
-    v->ucu_M_ta_t_14 = ucu_M_ta_t_7 - v->axis_x_ucu_axes4_y*ucu_M_ta_t_2 -
-        v->axis_z_ucu_axes4_y*ucu_M_ta_t_5 - ucu_M_ta_t_9;
+    v->ucu_M_ta_t_14 = v->axis_x_ucu_axes4_y*ucu_M_ta_t_2 + v->axis_z_ucu_axes4_y*ucu_M_ta_t_5
+        + ucu_M_ta_t_7 + ucu_M_ta_t_9;
     v->ucu_M_ta_t_15 = v->ucu_Q_yy*v->ucu_q_x - v->axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
         v->axis_z_ucu_axes4_z*ucu_M_ta_t_5 - v->ucu_Q_xy*v->ucu_q_y;
     v->ucu_M_ta_t_16 = v->ucu_Q_zz*v->ucu_q_y - v->axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
@@ -2197,7 +2197,7 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         v->axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) + ucu_d_G_m_xz*v->ucu_q_y -
         ucu_d_G_m_xy*v->ucu_q_z - v->ucu_M_ta_t_13*v->ucu_q_z + v->ucu_M_ta_t_16*v->ucu_q_y;
     v->ucu_M_aa_t_2 = ucu_dalpha_G_m1_y*v->ucu_n_m1_x + ucu_d_G_m_xx*v->ucu_q_z -
-        ucu_d_G_m_xz*v->ucu_q_x + v->ucu_M_ta_t_17*v->ucu_q_y - v->ucu_M_ta_t_14*v->ucu_q_z;
+        ucu_d_G_m_xz*v->ucu_q_x + v->ucu_M_ta_t_17*v->ucu_q_y + v->ucu_M_ta_t_14*v->ucu_q_z;
     v->ucu_M_aa_t_3 = ucu_dalpha_G_m1_z*v->ucu_n_m1_x + ucu_d_G_m_xy*v->ucu_q_x -
         ucu_d_G_m_xx*v->ucu_q_y - v->ucu_M_ta_t_15*v->ucu_q_z + v->ucu_M_ta_t_18*v->ucu_q_y;
     v->ucu_M_aa_t_4 = ucu_dalpha_G_m1_y*v->ucu_n_m1_y + ucu_d_G_m_yx*v->ucu_q_z -
@@ -2542,7 +2542,7 @@ INLINE void any_sums_ucu(size_t k, size_t count, int add, const values_ucu *v, r
     gather(&terms[7*count + k], add, v->ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v->ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v->ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v->ucu_M_ta_t_14);  /* M_ta_yy */
+    gather(&terms[10*count + k], add, -v->ucu_M_ta_t_14);  /* M_ta_yy */
     gather(&terms[11*count + k], add, v->ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
@@ -2792,11 +2792,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)27)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[27] CLEARED;
-    real terms_ucu[27*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ucu[SUMS_OF_dynamics*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ucu))
@@ -2806,7 +2809,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         any_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2816,7 +2819,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ucu[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2824,7 +2827,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2948,10 +2951,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)21)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[21] CLEARED;
-    real terms_ucu[21*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ucu[SUMS_OF_M*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ucu))
@@ -2961,7 +2967,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2970,14 +2976,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ucu[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3050,10 +3056,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ucu[SUMS_OF_Z*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ucu))
@@ -3063,7 +3072,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -3073,7 +3082,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ucu[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3081,7 +3090,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3112,9 +3121,11 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ucu[8*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3130,7 +3141,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ucu[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3293,11 +3304,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[7*LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ucu[SUMS_OF_required*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[7*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
@@ -3310,7 +3324,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         required_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3320,7 +3334,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ucu[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3328,7 +3342,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3382,9 +3396,11 @@ INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3400,7 +3416,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ucu[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3449,10 +3465,12 @@ INLINE void joint_rates_place_ucu(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3468,7 +3486,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ucu[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3521,10 +3539,12 @@ INLINE void joint_accelerations_place_ucu(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ucu[6*LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3540,7 +3560,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ucu[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3615,10 +3635,12 @@ INLINE void legs_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[9*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ucu[10*LEGS(LEGS_OF_ucu)] CLEARED;
     clear(actuator, 36);
     values v;
@@ -3681,10 +3703,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ucu[LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ucu[SUMS_OF_potential*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[LEGS(LEGS_OF_ucu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ucu); i += BESIDE(LEGS_OF_ucu)) {
@@ -3697,7 +3722,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         any_place_ucu_2(0, i, LEGS(LEGS_OF_ucu), o_ucu, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3782,11 +3807,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_ucu[LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[9*LEGS(LEGS_OF_ucu)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ucu[SUMS_OF_condition*LEGS(LEGS_OF_ucu)] CLEARED, o_ucu[9*LEGS(LEGS_OF_ucu)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3797,7 +3825,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ucu; ++i) {
         condition_place_ucu(1, i, 0, i, LEGS(LEGS_OF_ucu), o_ucu, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ucu + n*LEGS(LEGS_OF_ucu), LEGS_OF_ucu);
     }
     condition_after(m, 1, 0, sums, lengths, t);

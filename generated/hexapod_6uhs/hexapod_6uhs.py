@@ -20,6 +20,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -934,6 +935,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -952,10 +954,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -983,10 +985,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1037,14 +1039,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1057,35 +1058,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1095,7 +1101,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1577,7 +1584,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2010,8 +2017,8 @@ def _run_dynamics(m, X, V):
     (
     M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_yy, M_ta_zz,
         M_ta_uhs_xy, M_ta_uhs_xz, M_ta_uhs_yx, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_aa_uhs_xx,
-        M_aa_uhs_xy, M_aa_uhs_xz, M_aa_t, M_aa_uhs_yz, M_aa_uhs_zz, Z_t_uhs_x, Z_t_uhs_y,
-        Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z,
+        M_aa_uhs_xy, M_aa_t, M_aa_t_2, M_aa_uhs_yz, M_aa_uhs_zz, Z_t_uhs_x, Z_t_uhs_y, Z_t_uhs_z,
+        Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z,
     ) = [0.0] * 26
     for leg, k in legs[0]:
         (
@@ -2507,13 +2514,13 @@ def _run_dynamics(m, X, V):
         uhs_M_ta_t_6 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
         uhs_M_ta_t_7 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
         uhs_M_ta_t_8 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
-        uhs_M_ta_t_9 = uhs_M_ta_t_4 - uhs_Q_xz*uhs_q_y
+        uhs_M_ta_t_9 = uhs_Q_xz*uhs_q_y - uhs_M_ta_t_4
         # (M_aa) rotational block of M
         uhs_M_aa_t = uhs_M_ta_t_7*uhs_q_y - uhs_M_ta_t_3*uhs_q_z
         uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_y - uhs_M_ta_t_5*uhs_q_z
-        uhs_M_aa_t_3 = uhs_M_ta_t_9*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_6*uhs_q_z + uhs_M_ta_t_9*uhs_q_y
         uhs_M_aa_t_4 = uhs_M_ta_t*uhs_q_z + uhs_M_ta_t_8*uhs_q_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z - uhs_M_ta_t_9*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z + uhs_M_ta_t_9*uhs_q_x
         uhs_M_aa_t_6 = uhs_M_ta_t_6*uhs_q_x - uhs_M_ta_t_2*uhs_q_y
         # (Z_a) rotational part of Z
         uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z
@@ -2537,7 +2544,7 @@ def _run_dynamics(m, X, V):
         M_tt_uhs_zz += uhs_Q_zz
         # (M_ta) coupling block of M
         M_ta_yy += uhs_M_ta_t_5
-        M_ta_zz += uhs_M_ta_t_9
+        M_ta_zz += -uhs_M_ta_t_9
         M_ta_uhs_xy += -uhs_M_ta_t
         M_ta_uhs_xz += uhs_M_ta_t_2
         M_ta_uhs_yx += uhs_M_ta_t_3
@@ -2547,8 +2554,8 @@ def _run_dynamics(m, X, V):
         # (M_aa) rotational block of M
         M_aa_uhs_xx += uhs_M_aa_t
         M_aa_uhs_xy += uhs_M_aa_t_2
-        M_aa_uhs_xz += uhs_M_aa_t_3
-        M_aa_t += uhs_M_aa_t_4
+        M_aa_t += uhs_M_aa_t_3
+        M_aa_t_2 += uhs_M_aa_t_4
         M_aa_uhs_yz += uhs_M_aa_t_5
         M_aa_uhs_zz += uhs_M_aa_t_6
         # (Z_t) translational part of Z
@@ -2582,8 +2589,8 @@ def _run_dynamics(m, X, V):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_uhs_xx
     M_aa_xy = J_star_xy + M_aa_uhs_xy
-    M_aa_xz = J_star_xz + M_aa_uhs_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_uhs_yz
     M_aa_zz = J_star_zz + M_aa_uhs_zz
     # (Z_t) translational part of Z
@@ -2714,7 +2721,7 @@ def _run_M(m, X):
     (
     M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_yy, M_ta_zz,
         M_ta_uhs_xy, M_ta_uhs_xz, M_ta_uhs_yx, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_aa_uhs_xx,
-        M_aa_uhs_xy, M_aa_uhs_xz, M_aa_t, M_aa_uhs_yz, M_aa_uhs_zz,
+        M_aa_uhs_xy, M_aa_t, M_aa_t_2, M_aa_uhs_yz, M_aa_uhs_zz,
     ) = [0.0] * 20
     for leg, k in legs[0]:
         (
@@ -2957,13 +2964,13 @@ def _run_M(m, X):
         uhs_M_ta_t_6 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
         uhs_M_ta_t_7 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
         uhs_M_ta_t_8 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
-        uhs_M_ta_t_9 = uhs_M_ta_t_4 - uhs_Q_xz*uhs_q_y
+        uhs_M_ta_t_9 = uhs_Q_xz*uhs_q_y - uhs_M_ta_t_4
         # (M_aa) rotational block of M
         uhs_M_aa_t = uhs_M_ta_t_7*uhs_q_y - uhs_M_ta_t_3*uhs_q_z
         uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_y - uhs_M_ta_t_5*uhs_q_z
-        uhs_M_aa_t_3 = uhs_M_ta_t_9*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_6*uhs_q_z + uhs_M_ta_t_9*uhs_q_y
         uhs_M_aa_t_4 = uhs_M_ta_t*uhs_q_z + uhs_M_ta_t_8*uhs_q_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z - uhs_M_ta_t_9*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z + uhs_M_ta_t_9*uhs_q_x
         uhs_M_aa_t_6 = uhs_M_ta_t_6*uhs_q_x - uhs_M_ta_t_2*uhs_q_y
         ok = (
         ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
@@ -2979,7 +2986,7 @@ def _run_M(m, X):
         M_tt_uhs_zz += uhs_Q_zz
         # (M_ta) coupling block of M
         M_ta_yy += uhs_M_ta_t_5
-        M_ta_zz += uhs_M_ta_t_9
+        M_ta_zz += -uhs_M_ta_t_9
         M_ta_uhs_xy += -uhs_M_ta_t
         M_ta_uhs_xz += uhs_M_ta_t_2
         M_ta_uhs_yx += uhs_M_ta_t_3
@@ -2989,8 +2996,8 @@ def _run_M(m, X):
         # (M_aa) rotational block of M
         M_aa_uhs_xx += uhs_M_aa_t
         M_aa_uhs_xy += uhs_M_aa_t_2
-        M_aa_uhs_xz += uhs_M_aa_t_3
-        M_aa_t += uhs_M_aa_t_4
+        M_aa_t += uhs_M_aa_t_3
+        M_aa_t_2 += uhs_M_aa_t_4
         M_aa_uhs_yz += uhs_M_aa_t_5
         M_aa_uhs_zz += uhs_M_aa_t_6
     # (M_tt) translational block of M
@@ -3008,8 +3015,8 @@ def _run_M(m, X):
     # (M_aa) rotational block of M
     M_aa_xx = J_star_xx + M_aa_uhs_xx
     M_aa_xy = J_star_xy + M_aa_uhs_xy
-    M_aa_xz = J_star_xz + M_aa_uhs_xz
-    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_xz = J_star_xz - M_aa_t
+    M_aa_yy = J_star_yy - M_aa_t_2
     M_aa_yz = J_star_yz + M_aa_uhs_yz
     M_aa_zz = J_star_zz + M_aa_uhs_zz
     # (M_tt) translational block of M

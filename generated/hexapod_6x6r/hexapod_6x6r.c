@@ -4177,10 +4177,10 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     const real six_r_M_ta_t_9 = v->axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
         v->axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
         v->axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-    const real six_r_M_ta_t_10 = v->six_r_Q_xy*v->six_r_q_z;
+    const real six_r_M_ta_t_10 = -v->six_r_Q_xy*v->six_r_q_z;
     const real six_r_M_ta_t_11 = v->six_r_Q_xz*v->six_r_q_y;
     const real six_r_M_ta_t_12 = v->six_r_Q_yz*v->six_r_q_x;
-    v->six_r_M_ta_t_13 = six_r_M_ta_t_11 - six_r_M_ta_t_10 -
+    v->six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
         v->axis_x_six_r_axes5_x*six_r_M_ta_t - v->axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
         v->axis_z_six_r_axes5_x*six_r_M_ta_t_7;
     v->six_r_M_ta_t_14 = v->six_r_Q_xx*v->six_r_q_z - v->six_r_Q_xz*v->six_r_q_x -
@@ -4192,8 +4192,8 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     v->six_r_M_ta_t_16 = v->six_r_Q_yz*v->six_r_q_y - v->six_r_Q_yy*v->six_r_q_z -
         v->axis_x_six_r_axes5_x*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_x*six_r_M_ta_t_5 -
         v->axis_z_six_r_axes5_x*six_r_M_ta_t_8;
-    v->six_r_M_ta_t_17 = six_r_M_ta_t_10 - six_r_M_ta_t_12 -
-        v->axis_x_six_r_axes5_y*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_y*six_r_M_ta_t_5 -
+    v->six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
+        v->axis_x_six_r_axes5_y*six_r_M_ta_t_2 + v->axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
         v->axis_z_six_r_axes5_y*six_r_M_ta_t_8;
     v->six_r_M_ta_t_18 = v->six_r_Q_yy*v->six_r_q_x - v->six_r_Q_xy*v->six_r_q_y -
         v->axis_x_six_r_axes5_z*six_r_M_ta_t_2 - v->axis_y_six_r_axes5_z*six_r_M_ta_t_5 -
@@ -4218,7 +4218,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         v->six_r_M_ta_t_19*v->six_r_q_y - v->six_r_M_ta_t_16*v->six_r_q_z;
     v->six_r_M_aa_t_2 = six_r_d_G_m_xx*v->six_r_q_z - six_r_d_G_m_xz*v->six_r_q_x +
         six_r_dalpha_G_m1_y*v->six_r_n_m1_x + six_r_dalpha_G_m2_y*v->six_r_n_m2_x +
-        v->six_r_M_ta_t_20*v->six_r_q_y - v->six_r_M_ta_t_17*v->six_r_q_z;
+        v->six_r_M_ta_t_17*v->six_r_q_z + v->six_r_M_ta_t_20*v->six_r_q_y;
     v->six_r_M_aa_t_3 = six_r_d_G_m_xy*v->six_r_q_x - six_r_d_G_m_xx*v->six_r_q_y +
         six_r_dalpha_G_m1_z*v->six_r_n_m1_x + six_r_dalpha_G_m2_z*v->six_r_n_m2_x +
         v->six_r_M_ta_t_21*v->six_r_q_y - v->six_r_M_ta_t_18*v->six_r_q_z;
@@ -4620,7 +4620,7 @@ INLINE void any_sums_six_r(size_t k, size_t count, int add, const values_six_r *
     gather(&terms[7*count + k], add, v->six_r_M_ta_t_14);  /* M_ta_xy_of_legs */
     gather(&terms[8*count + k], add, v->six_r_M_ta_t_15);  /* M_ta_xz_of_legs */
     gather(&terms[9*count + k], add, v->six_r_M_ta_t_16);  /* M_ta_yx_of_legs */
-    gather(&terms[10*count + k], add, v->six_r_M_ta_t_17);  /* M_ta_yy */
+    gather(&terms[10*count + k], add, v->six_r_M_ta_t_17);  /* M_ta_t */
     gather(&terms[11*count + k], add, v->six_r_M_ta_t_18);  /* M_ta_yz_of_legs */
     gather(&terms[12*count + k], add, v->six_r_M_ta_t_19);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->six_r_M_ta_t_20);  /* M_ta_zy_of_legs */
@@ -4829,10 +4829,12 @@ INLINE void closure_six_r_place_six_r(size_t w, size_t i, size_t k, size_t at, s
     jacobian_six_r[(25*i + 24)*w + k] = o[24*count + at];
 }
 
+#define PASSED_IN_closure_six_r ((size_t)18)
+
 INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
     *residual_six_r, real *jacobian_six_r, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_closure_six_r] CLEARED;
     real o_six_r[25*LEGS(LEGS_OF_six_r)] CLEARED;
     clear(jacobian_six_r, 150);
     values v;
@@ -5029,9 +5031,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -5060,16 +5062,20 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
     t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)27)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
     *M, real *Z, real *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[27] CLEARED;
-    real terms_six_r[27*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_six_r[SUMS_OF_dynamics*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[8*LEGS(LEGS_OF_six_r)]
+        CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_six_r))
@@ -5079,7 +5085,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         any_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -5089,7 +5095,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, const r
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real *joints,
     real *restrict M, real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_six_r[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5097,7 +5103,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, c
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -5195,9 +5201,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    const real M_ta_yy = sums[10*w + k];
-    M[(NV + 4)*w + k] = M_ta_yy;
-    M[(4*NV + 1)*w + k] = M_ta_yy;
+    const real M_ta_t = sums[10*w + k];
+    M[(NV + 4)*w + k] = -M_ta_t;
+    M[(4*NV + 1)*w + k] = -M_ta_t;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -5218,15 +5224,18 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
     t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)21)
+
 APART void M_run(const prepared *m, const real *X, const real *joints, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[21] CLEARED;
-    real terms_six_r[21*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_six_r[SUMS_OF_M*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_six_r))
@@ -5236,7 +5245,7 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         any_place_six_r_2(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -5245,14 +5254,14 @@ APART void M_run(const prepared *m, const real *X, const real *joints, real *M, 
 INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict M,
     status_flags *restrict t)
 {
-    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_six_r[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -5329,11 +5338,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *joints, real *Z,
     status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_six_r[SUMS_OF_Z*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_six_r))
@@ -5343,7 +5355,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         any_place_six_r_2(0, i, LEGS(LEGS_OF_six_r), o_six_r, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -5353,7 +5365,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
     *restrict Z, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_six_r[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5361,7 +5373,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -5393,9 +5405,11 @@ INLINE void H_legs_six_r(const prepared *m, size_t w, size_t i, size_t j, size_t
         (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, const real *joints, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_six_r[8*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -5411,7 +5425,7 @@ APART void H_run(const prepared *m, const real *X, const real *joints, real *H, 
 INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, real *restrict H,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_six_r[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5591,11 +5605,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
     real *joints, real *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_six_r[SUMS_OF_required*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[7*LEGS(LEGS_OF_six_r)]
+        CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
@@ -5608,7 +5626,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         required_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -5618,7 +5636,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_six_r[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5626,7 +5644,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -5743,10 +5761,12 @@ INLINE void joint_rates_place_six_r(size_t w, size_t i, size_t k, size_t at, siz
     t->total[k] += o[6*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
     real *qd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -5762,7 +5782,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, cons
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, const real
     *joints, real *restrict qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_six_r[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5823,10 +5843,12 @@ INLINE void joint_accelerations_place_six_r(size_t w, size_t i, size_t k, size_t
     t->total[k] += o[6*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_six_r[7*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -5842,7 +5864,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, const real *joints, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_six_r[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5930,10 +5952,12 @@ INLINE void legs_place_six_r(size_t w, size_t i, size_t k, size_t at, size_t cou
     t->singular[k] += o[12*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, const real
     *joints, real *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_six_r[13*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -6029,11 +6053,14 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, const real *joints, real *potential,
     status_flags *t)
 {
-    real s[1] CLEARED, sums[1] CLEARED;
-    real terms_six_r[LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_six_r[SUMS_OF_potential*LEGS(LEGS_OF_six_r)] CLEARED;
     values v;
     potential_before(m, 1, 0, X, &v, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_six_r); i += BESIDE(LEGS_OF_six_r)) {
@@ -6043,7 +6070,7 @@ INLINE void potential_run(const prepared *m, const real *X, const real *joints, 
                 terms_six_r);
         }
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -6129,11 +6156,15 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
     *lengths, real *pivots, real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_six_r[LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[9*LEGS(LEGS_OF_six_r)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_six_r[SUMS_OF_condition*LEGS(LEGS_OF_six_r)] CLEARED, o_six_r[9*LEGS(LEGS_OF_six_r)]
+        CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -6144,7 +6175,7 @@ APART void condition_run(const prepared *m, const real *X, const real *joints, r
     for (size_t i = 0; i < LEGS_OF_six_r; ++i) {
         condition_place_six_r(1, i, 0, i, LEGS(LEGS_OF_six_r), o_six_r, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_six_r + n*LEGS(LEGS_OF_six_r), LEGS_OF_six_r);
     }
     condition_after(m, 1, 0, sums, lengths, t);

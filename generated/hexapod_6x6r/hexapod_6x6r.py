@@ -20,6 +20,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -1307,6 +1308,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1325,10 +1327,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1356,10 +1358,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1410,14 +1412,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1430,35 +1431,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1468,7 +1474,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1950,7 +1957,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2439,7 +2446,7 @@ def _run_dynamics(m, X, V, q):
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_yy, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
         M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
         M_aa_six_r_yz, M_aa_six_r_zz, Z_t_six_r_x, Z_t_six_r_y, Z_t_six_r_z, Z_a_six_r_x,
         Z_a_six_r_y, Z_a_six_r_z,
@@ -4545,11 +4552,11 @@ def _run_dynamics(m, X, V, q):
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz
         )
-        six_r_M_ta_t_10 = six_r_Q_xy*six_r_q_z
+        six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z
         six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y
         six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x
         six_r_M_ta_t_13 = (
-        six_r_M_ta_t_11 - six_r_M_ta_t_10 - axis_x_six_r_axes5_x*six_r_M_ta_t -
+        six_r_M_ta_t_10 + six_r_M_ta_t_11 - axis_x_six_r_axes5_x*six_r_M_ta_t -
             axis_y_six_r_axes5_x*six_r_M_ta_t_4 - axis_z_six_r_axes5_x*six_r_M_ta_t_7
         )
         six_r_M_ta_t_14 = (
@@ -4568,8 +4575,8 @@ def _run_dynamics(m, X, V, q):
             six_r_Q_yy*six_r_q_z
         )
         six_r_M_ta_t_17 = (
-        six_r_M_ta_t_10 - six_r_M_ta_t_12 - axis_x_six_r_axes5_y*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_5 - axis_z_six_r_axes5_y*six_r_M_ta_t_8
+        six_r_M_ta_t_10 + six_r_M_ta_t_12 + axis_x_six_r_axes5_y*six_r_M_ta_t_2 +
+            axis_y_six_r_axes5_y*six_r_M_ta_t_5 + axis_z_six_r_axes5_y*six_r_M_ta_t_8
         )
         six_r_M_ta_t_18 = (
         six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
@@ -4602,8 +4609,8 @@ def _run_dynamics(m, X, V, q):
             six_r_d_G_m_xy*six_r_q_z
         )
         six_r_M_aa_t_2 = (
-        six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_M_ta_t_17*six_r_q_z -
+        six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z +
+            six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x -
             six_r_d_G_m_xz*six_r_q_x
         )
         six_r_M_aa_t_3 = (
@@ -4667,7 +4674,7 @@ def _run_dynamics(m, X, V, q):
         M_ta_six_r_xy += six_r_M_ta_t_14
         M_ta_six_r_xz += six_r_M_ta_t_15
         M_ta_six_r_yx += six_r_M_ta_t_16
-        M_ta_yy += six_r_M_ta_t_17
+        M_ta_t += six_r_M_ta_t_17
         M_ta_six_r_yz += six_r_M_ta_t_18
         M_ta_six_r_zx += six_r_M_ta_t_19
         M_ta_six_r_zy += six_r_M_ta_t_20
@@ -4740,8 +4747,8 @@ def _run_dynamics(m, X, V, q):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = M_ta_yy
-    out_M[25] = M_ta_yy
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
@@ -4834,7 +4841,7 @@ def _run_M(m, X, q):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     (
     M_tt_six_r_xx, M_tt_xy, M_tt_xz, M_tt_six_r_yy, M_tt_yz, M_tt_six_r_zz, M_ta_xx,
-        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_yy, M_ta_six_r_yz, M_ta_six_r_zx,
+        M_ta_six_r_xy, M_ta_six_r_xz, M_ta_six_r_yx, M_ta_t, M_ta_six_r_yz, M_ta_six_r_zx,
         M_ta_six_r_zy, M_ta_zz, M_aa_six_r_xx, M_aa_six_r_xy, M_aa_six_r_xz, M_aa_six_r_yy,
         M_aa_six_r_yz, M_aa_six_r_zz,
     ) = [0.0] * 21
@@ -6182,11 +6189,11 @@ def _run_M(m, X, q):
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz
         )
-        six_r_M_ta_t_10 = six_r_Q_xy*six_r_q_z
+        six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z
         six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y
         six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x
         six_r_M_ta_t_13 = (
-        six_r_M_ta_t_11 - six_r_M_ta_t_10 - axis_x_six_r_axes5_x*six_r_M_ta_t -
+        six_r_M_ta_t_10 + six_r_M_ta_t_11 - axis_x_six_r_axes5_x*six_r_M_ta_t -
             axis_y_six_r_axes5_x*six_r_M_ta_t_4 - axis_z_six_r_axes5_x*six_r_M_ta_t_7
         )
         six_r_M_ta_t_14 = (
@@ -6205,8 +6212,8 @@ def _run_M(m, X, q):
             six_r_Q_yy*six_r_q_z
         )
         six_r_M_ta_t_17 = (
-        six_r_M_ta_t_10 - six_r_M_ta_t_12 - axis_x_six_r_axes5_y*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_5 - axis_z_six_r_axes5_y*six_r_M_ta_t_8
+        six_r_M_ta_t_10 + six_r_M_ta_t_12 + axis_x_six_r_axes5_y*six_r_M_ta_t_2 +
+            axis_y_six_r_axes5_y*six_r_M_ta_t_5 + axis_z_six_r_axes5_y*six_r_M_ta_t_8
         )
         six_r_M_ta_t_18 = (
         six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
@@ -6239,8 +6246,8 @@ def _run_M(m, X, q):
             six_r_d_G_m_xy*six_r_q_z
         )
         six_r_M_aa_t_2 = (
-        six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_M_ta_t_17*six_r_q_z -
+        six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y + six_r_d_G_m_xx*six_r_q_z +
+            six_r_dalpha_G_m1_y*six_r_n_m1_x + six_r_dalpha_G_m2_y*six_r_n_m2_x -
             six_r_d_G_m_xz*six_r_q_x
         )
         six_r_M_aa_t_3 = (
@@ -6281,7 +6288,7 @@ def _run_M(m, X, q):
         M_ta_six_r_xy += six_r_M_ta_t_14
         M_ta_six_r_xz += six_r_M_ta_t_15
         M_ta_six_r_yx += six_r_M_ta_t_16
-        M_ta_yy += six_r_M_ta_t_17
+        M_ta_t += six_r_M_ta_t_17
         M_ta_six_r_yz += six_r_M_ta_t_18
         M_ta_six_r_zx += six_r_M_ta_t_19
         M_ta_six_r_zy += six_r_M_ta_t_20
@@ -6330,8 +6337,8 @@ def _run_M(m, X, q):
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = M_ta_yy
-    out_M[25] = M_ta_yy
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx

@@ -2676,11 +2676,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrrs[SUMS_OF_dynamics*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[15*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrs))
@@ -2690,7 +2694,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2700,7 +2704,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrrs[15*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2708,7 +2712,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2833,10 +2837,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_rrrs[20*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rrrs[SUMS_OF_M*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrs))
@@ -2846,7 +2853,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2855,14 +2862,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrrs[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2936,10 +2943,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rrrs[SUMS_OF_Z*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrs))
@@ -2949,7 +2959,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2959,7 +2969,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrrs[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2967,7 +2977,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2998,9 +3008,11 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3016,7 +3028,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rrrs[15*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3186,11 +3198,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrrs[SUMS_OF_required*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
@@ -3203,7 +3219,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         required_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3213,7 +3229,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrrs[14*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3221,7 +3237,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3274,9 +3290,11 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3292,7 +3310,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3340,10 +3358,12 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3359,7 +3379,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3408,10 +3428,12 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3427,7 +3449,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3503,10 +3525,12 @@ INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t coun
     t->singular[k] += o[10*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3580,10 +3604,14 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrrs[SUMS_OF_potential*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrs); i += BESIDE(LEGS_OF_rrrs)) {
@@ -3596,7 +3624,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3691,11 +3719,15 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[17*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rrrs[SUMS_OF_condition*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[17*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrs))
@@ -3705,7 +3737,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         condition_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrrs + n*LEGS(LEGS_OF_rrrs), LEGS_OF_rrrs);
     }
     condition_after(m, 1, 0, sums, lengths, t);

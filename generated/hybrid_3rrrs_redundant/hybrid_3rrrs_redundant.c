@@ -2253,21 +2253,21 @@ typedef struct {
         axis_z_rrrrs_axes4_x, axis_z_rrrrs_axes4_y, axis_z_rrrrs_axes4_z, rrrrs_w_1_in_axes4_z,
         rrrrs_w_1_x, rrrrs_w_1_y, rrrrs_w_1_z, axis_y_rrrrs_axes4_x, axis_y_rrrrs_axes4_y,
         axis_y_rrrrs_axes4_z, axis_x_rrrrs_axes4_x, axis_x_rrrrs_axes4_y, axis_x_rrrrs_axes4_z,
-        rrrrs_w_3_in_axes4_x, rrrrs_w_3_t_7, rrrrs_w_3_x, rrrrs_w_3_y, rrrrs_w_3_z,
+        inv_rrrrs_r_3_in_axes4_y, rrrrs_w_3_t_7, rrrrs_w_3_t_8, rrrrs_w_3_t_9, rrrrs_w_3_t_10,
         rrrrs_d_2_in_axes4_x, rrrrs_d_2_in_axes4_y, rrrrs_g_in_axes1_x, rrrrs_g_in_axes1_y,
         rrrrs_g_in_axes3_x, rrrrs_g_in_axes3_y, rrrrs_g_in_axes4_x, rrrrs_g_in_axes4_y,
         rrrrs_g_in_axes4_z, rrrrs_P_c_3_in_axes2_x, rrrrs_mu_2_t_5, rrrrs_mu_2_t_6, rrrrs_mu_2_t_7,
         rrrrs_mu_1_t, rrrrs_H_a_1_x, rrrrs_H_a_1_y, rrrrs_H_a_1_z, rrrrs_H_a_3_x, rrrrs_H_a_3_y,
-        rrrrs_H_a_3_z, rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z, rrrrs_qd_1, rrrrs_qd_3, rrrrs_qd_4,
+        rrrrs_H_a_3_z, rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z, rrrrs_qd_1, rrrrs_qd_3_t, rrrrs_qd_4,
         rrrrs_W_1_in_axes4_xy, rrrrs_W_2_in_axes2_yz, rrrrs_W_2_in_axes2_xz, rrrrs_W_2_in_axes2_xy,
         rrrrs_W_3_in_axes3_xy, rrrrs_W_3_in_axes3_xz, rrrrs_W_3_in_axes3_yz, rrrrs_W_4_in_axes4_xz,
-        rrrrs_W_4_in_axes4_yz, rrrrs_u_1_x, rrrrs_u_1_y, rrrrs_u_1_z, rrrrs_zeta_3_in_axes3_x,
+        rrrrs_W_4_in_axes4_yz, rrrrs_u_1_x, rrrrs_u_1_y, rrrrs_u_1_z, rrrrs_zeta_3_t,
         rrrrs_zeta_3_in_axes3_y, rrrrs_zeta_4_in_axes4_x, rrrrs_zeta_4_t, rrrrs_bias_in_axes4_x,
         rrrrs_bias_in_axes4_y, rrrrs_bias_in_axes4_z, rrrrs_acc_3_t_3, rrrrs_acc_3_t_4, rrrrs_f_3_t_3,
         rrrrs_f_3_t_4, rrrrs_f_3_t_5, rrrrs_mu_4_t, rrrrs_mu_4_t_2, rrrrs_mu_4_t_3, rrrrs_mu_3_t,
         rrrrs_mu_3_t_2, rrrrs_mu_3_t_3, rrrrs_mu_2_t_2, rrrrs_mu_2_t_3, rrrrs_mu_2_t_4, rrrrs_c_t,
         rrrrs_c_t_2, rrrrs_c_t_3, rrrrs_S_ddot_in_axes4_x, rrrrs_S_ddot_in_axes4_y,
-        rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3, rrrrs_qdd_4, rrrrs_U_x, rrrrs_U_y,
+        rrrrs_S_ddot_in_axes4_z, rrrrs_qdd_1, rrrrs_qdd_3_t, rrrrs_qdd_4, rrrrs_U_x, rrrrs_U_y,
         rrrrs_U_z, rrrrs_P_2_o, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3, rrrrs_Q_xx, rrrrs_Q_yy,
         rrrrs_Q_t_13, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yz, rrrrs_d_P_2_x, rrrrs_d_P_2_y, rrrrs_d_P_2_z,
         rrrrs_dy_2_P_2, rrrrs_M_ta_t, rrrrs_M_ta_t_2, rrrrs_M_ta_t_3, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6,
@@ -2418,11 +2418,11 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
         v->axis_y_rrrrs_axes4_x*v->axis_z_rrrrs_axes4_z;
     v->axis_x_rrrrs_axes4_z = v->axis_y_rrrrs_axes4_x*v->axis_z_rrrrs_axes4_y -
         v->axis_y_rrrrs_axes4_y*v->axis_z_rrrrs_axes4_x;
-    v->rrrrs_w_3_in_axes4_x = -1/v->rrrrs_r_3_in_axes4_y;
-    v->rrrrs_w_3_t_7 = v->rrrrs_r_2_in_axes4_y*v->rrrrs_w_3_in_axes4_x;
-    v->rrrrs_w_3_x = v->axis_x_rrrrs_axes4_x*v->rrrrs_w_3_in_axes4_x;
-    v->rrrrs_w_3_y = v->axis_x_rrrrs_axes4_y*v->rrrrs_w_3_in_axes4_x;
-    v->rrrrs_w_3_z = v->axis_x_rrrrs_axes4_z*v->rrrrs_w_3_in_axes4_x;
+    v->inv_rrrrs_r_3_in_axes4_y = 1/v->rrrrs_r_3_in_axes4_y;
+    v->rrrrs_w_3_t_7 = v->inv_rrrrs_r_3_in_axes4_y*v->rrrrs_r_2_in_axes4_y;
+    v->rrrrs_w_3_t_8 = v->axis_x_rrrrs_axes4_x*v->inv_rrrrs_r_3_in_axes4_y;
+    v->rrrrs_w_3_t_9 = v->axis_x_rrrrs_axes4_y*v->inv_rrrrs_r_3_in_axes4_y;
+    v->rrrrs_w_3_t_10 = v->axis_x_rrrrs_axes4_z*v->inv_rrrrs_r_3_in_axes4_y;
     /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
     const real rrrrs_d_2_in_axes2_x = v->rrrrs_h_3_t_6*m->rrrrs_joint2_offset_x[i];
     const real rrrrs_d_2_in_axes2_y = -v->rrrrs_h_3_t_7*m->rrrrs_joint2_offset_x[i];
@@ -2470,9 +2470,9 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_H_a_1_y = v->rrrrs_q_z*v->rrrrs_w_1_x - v->rrrrs_q_x*v->rrrrs_w_1_z;
     v->rrrrs_H_a_1_z = v->rrrrs_q_x*v->rrrrs_w_1_y - v->rrrrs_q_y*v->rrrrs_w_1_x;
     /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
-    v->rrrrs_H_a_3_x = v->rrrrs_q_y*v->rrrrs_w_3_z - v->rrrrs_q_z*v->rrrrs_w_3_y;
-    v->rrrrs_H_a_3_y = v->rrrrs_q_z*v->rrrrs_w_3_x - v->rrrrs_q_x*v->rrrrs_w_3_z;
-    v->rrrrs_H_a_3_z = v->rrrrs_q_x*v->rrrrs_w_3_y - v->rrrrs_q_y*v->rrrrs_w_3_x;
+    v->rrrrs_H_a_3_x = v->rrrrs_q_z*v->rrrrs_w_3_t_9 - v->rrrrs_q_y*v->rrrrs_w_3_t_10;
+    v->rrrrs_H_a_3_y = v->rrrrs_q_x*v->rrrrs_w_3_t_10 - v->rrrrs_q_z*v->rrrrs_w_3_t_8;
+    v->rrrrs_H_a_3_z = v->rrrrs_q_y*v->rrrrs_w_3_t_8 - v->rrrrs_q_x*v->rrrrs_w_3_t_9;
 }
 
 INLINE void stage_rrrrs_A_X(size_t w, size_t j, const real *A, values_rrrrs *v)
@@ -2521,13 +2521,13 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         v->axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
         v->axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
     /* (rrrrs-qd_3) rate of joint 3 */
-    v->rrrrs_qd_3 = v->rrrrs_w_3_in_axes4_x*(v->axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-        v->axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+    v->rrrrs_qd_3_t = v->inv_rrrrs_r_3_in_axes4_y*(v->axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x
+        + v->axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
         v->axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z);
     /* (rrrrs-qd_4) rate of joint 4 */
     v->rrrrs_qd_4 = m->rrrrs_w_4_in_axes4_y[i]*(v->axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
         v->axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-        v->axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z - v->rrrrs_qd_3*v->rrrrs_r_3_in_axes4_x);
+        v->axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z + v->rrrrs_qd_3_t*v->rrrrs_r_3_in_axes4_x);
     /* (rrrrs-omega_1) angular velocity of link 1 */
     const real rrrrs_omega_1_in_axes2_x = v->rrrrs_h_3_t_6*v->rrrrs_qd_1;
     const real rrrrs_omega_1_in_axes2_y = -v->rrrrs_h_3_t_7*v->rrrrs_qd_1;
@@ -2548,7 +2548,7 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2;
     v->rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y;
     /* (rrrrs-omega_3) angular velocity of link 3 */
-    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 + v->rrrrs_qd_3;
+    const real rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - v->rrrrs_qd_3_t;
     /* (rrrrs-W_3) centripetal tensor of link 3 */
     v->rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2;
     v->rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z;
@@ -2565,11 +2565,11 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3;
     v->rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t;
     /* (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-    v->rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*v->rrrrs_qd_3;
-    v->rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*v->rrrrs_qd_3;
+    v->rrrrs_zeta_3_t = rrrrs_omega_1_t_2*v->rrrrs_qd_3_t;
+    v->rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*v->rrrrs_qd_3_t;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real rrrrs_beta_3_in_axes3_x = v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_25 -
-        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_26 + v->rrrrs_zeta_3_in_axes3_x;
+        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_26 - v->rrrrs_zeta_3_t;
     const real rrrrs_beta_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y -
         v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_25 -
         v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_26;
@@ -2659,10 +2659,10 @@ INLINE void stage_rrrrs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, c
     /* (rrrrs-qdd_1) acceleration of joint 1 */
     v->rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
     /* (rrrrs-qdd_3) acceleration of joint 3 */
-    v->rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*v->rrrrs_w_3_in_axes4_x;
+    v->rrrrs_qdd_3_t = v->inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_in_axes4_x;
     /* (rrrrs-qdd_4) acceleration of joint 4 */
-    v->rrrrs_qdd_4 = m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_in_axes4_y -
-        v->rrrrs_qdd_3*v->rrrrs_r_3_in_axes4_x);
+    v->rrrrs_qdd_4 = m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_in_axes4_y +
+        v->rrrrs_qdd_3_t*v->rrrrs_r_3_in_axes4_x);
 }
 
 INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
@@ -2682,7 +2682,7 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-qdd_1_o) remainder of: acceleration of joint 1 */
     const real rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*v->rrrrs_w_1_in_axes4_z;
     /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*v->rrrrs_w_3_in_axes4_x;
+    const real rrrrs_qdd_3_o_t = v->inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x;
     /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real rrrrs_alpha_1_o_in_axes2_x = v->rrrrs_h_3_t_6*rrrrs_qdd_1_o;
     const real rrrrs_alpha_1_o_in_axes2_y = -v->rrrrs_h_3_t_7*rrrrs_qdd_1_o;
@@ -2697,17 +2697,16 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_B_2_o_in_axes2_zy = v->rrrrs_W_2_in_axes2_yz +
         rrrrs_alpha_2_o_in_axes2_x;
     /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrrs_alpha_3_o_in_axes3_x = v->rrrrs_zeta_3_in_axes3_x +
-        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_25 +
-        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_26;
+    const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_25 -
+        v->rrrrs_zeta_3_t + rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_26;
     const real rrrrs_alpha_3_o_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
         rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_25 -
         rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_26;
     /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-    const real rrrrs_B_3_o_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t;
     const real rrrrs_B_3_o_in_axes3_xz = v->rrrrs_W_3_in_axes3_xz +
         rrrrs_alpha_3_o_in_axes3_y;
-    const real rrrrs_B_3_o_in_axes3_yx = v->rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o;
+    const real rrrrs_B_3_o_in_axes3_yx = v->rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o_t;
     const real rrrrs_B_3_o_in_axes3_yz = v->rrrrs_W_3_in_axes3_yz -
         rrrrs_alpha_3_o_in_axes3_x;
     const real rrrrs_B_3_o_in_axes3_zx = v->rrrrs_W_3_in_axes3_xz -
@@ -2719,9 +2718,8 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         rrrrs_alpha_3_o_in_axes3_x*v->rrrrs_c_4 - rrrrs_alpha_3_o_in_axes3_y*v->rrrrs_s_4_t;
     const real rrrrs_alpha_4_o_in_axes4_y = rrrrs_alpha_3_o_in_axes3_x*v->rrrrs_s_4_t -
         v->rrrrs_zeta_4_t + rrrrs_alpha_3_o_in_axes3_y*v->rrrrs_c_4;
-    const real rrrrs_alpha_4_o_in_axes4_z = rrrrs_qdd_3_o +
-        m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y -
-        rrrrs_qdd_3_o*v->rrrrs_r_3_in_axes4_x);
+    const real rrrrs_alpha_4_o_in_axes4_z = m->rrrrs_w_4_in_axes4_y[i]*(rrrrs_rel_o_in_axes4_y
+        + rrrrs_qdd_3_o_t*v->rrrrs_r_3_in_axes4_x) - rrrrs_qdd_3_o_t;
     /* (rrrrs-B_4_o) remainder of the acceleration tensor of link 4 */
     const real rrrrs_B_4_o_in_axes4_xy = v->rrrrs_W_1_in_axes4_xy -
         rrrrs_alpha_4_o_in_axes4_z;
@@ -2847,7 +2845,7 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
        weight along all degrees of freedom */
     const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     const real rrrrs_G_o_in_axes4_x =
-        -v->rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*v->rrrrs_r_3_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y*(rrrrs_G_o_in_axes4_y*v->rrrrs_r_3_in_axes4_x -
         rrrrs_N_3_o_in_axes3_z);
     /* (rrrrs-c_o) remainder of: leg force on the platform without actuation and without the mass at
        the connection point */
@@ -2886,7 +2884,7 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
 {
     /* (rrrrs-w_4) reciprocal vector 3 */
     const real rrrrs_w_4_in_axes4_x =
-        -v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
+        v->inv_rrrrs_r_3_in_axes4_y*v->rrrrs_r_3_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-D_1_4) inertia of joint 4 along joint 1 */
     const real rrrrs_D_1_4 = m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_e_1_in_axes4_x +
         m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_e_1_in_axes4_y;
@@ -2940,38 +2938,36 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
        inertia and weight */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_Gamma_4_t_2 = m->rrrrs_d_Gamma_4_t[i]*v->rrrrs_r_3_in_axes4_x;
-    const real rrrrs_d_Gamma_4_in_axes4_x =
-        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_J_4_in_spec4_zz[i] - rrrrs_d_Gamma_4_t_2) -
-        m->rrrrs_h_4_in_spec4_y[i];
+    const real rrrrs_d_Gamma_4_in_axes4_x = -m->rrrrs_h_4_in_spec4_y[i] -
+        v->inv_rrrrs_r_3_in_axes4_y*(m->rrrrs_J_4_in_spec4_zz[i] - rrrrs_d_Gamma_4_t_2);
     /* (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
        links' inertia and weight */
     const real rrrrs_dy_2_Gamma_4_t =
-        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(-v->rrrrs_r_2_in_axes4_x -
-        v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_t_7);
-    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] +
+        m->rrrrs_J_4_in_spec4_zz[i]*m->rrrrs_w_4_in_axes4_y[i]*(v->rrrrs_r_3_in_axes4_x*v->rrrrs_w_3_t_7
+        - v->rrrrs_r_2_in_axes4_x);
+    const real rrrrs_dy_2_Gamma_4 = m->rrrrs_J_4_in_spec4_zz[i] -
         m->rrrrs_J_4_in_spec4_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
-    const real rrrrs_d_Gamma_3_in_axes4_x =
-        v->rrrrs_w_3_in_axes4_x*(m->rrrrs_Jc_3_in_axes3_zz[i] - rrrrs_d_Gamma_4_t_2) -
-        m->rrrrs_h_4_in_spec4_y[i];
+    const real rrrrs_d_Gamma_3_in_axes4_x = -m->rrrrs_h_4_in_spec4_y[i] -
+        v->inv_rrrrs_r_3_in_axes4_y*(m->rrrrs_Jc_3_in_axes3_zz[i] - rrrrs_d_Gamma_4_t_2);
     /* (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
        links' inertia and weight */
-    const real rrrrs_dy_2_Gamma_3 = rrrrs_L_c_3_2_in_axes2_z +
+    const real rrrrs_dy_2_Gamma_3 = rrrrs_L_c_3_2_in_axes2_z -
         m->rrrrs_Jc_3_in_axes3_zz[i]*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rrrrs_d_Gamma_2_in_axes4_x = v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z
-        - rrrrs_d_Gamma_4_t_2) - m->rrrrs_h_4_in_spec4_y[i];
+    const real rrrrs_d_Gamma_2_in_axes4_x = -m->rrrrs_h_4_in_spec4_y[i] -
+        v->inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes2_z - rrrrs_d_Gamma_4_t_2);
     /* (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real rrrrs_dy_2_Gamma_2 = m->rrrrs_J_2_in_spec2_zz[i] + m->rrrrs_Jc_3_in_axes3_zz[i]
-        + rrrrs_Jc_2_t_7 + rrrrs_L_c_3_2_in_axes2_z*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
+        + rrrrs_Jc_2_t_7 - rrrrs_L_c_3_2_in_axes2_z*v->rrrrs_w_3_t_7 + rrrrs_dy_2_Gamma_4_t;
     /* (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_1_t = rrrrs_D_1_4*m->rrrrs_w_4_in_axes4_y[i];
     const real rrrrs_d_Gamma_1_in_axes4_x = v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_z[i]
-        + v->rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z -
+        - v->inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes1_z -
         rrrrs_d_Gamma_1_t*v->rrrrs_r_3_in_axes4_x);
     const real rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t -
         v->rrrrs_e_1_in_axes4_x*m->rrrrs_h_4_in_spec4_z[i];
@@ -2982,18 +2978,17 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
        leg's inertia and weight along all degrees of freedom */
     const real rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*v->rrrrs_w_1_in_axes4_z;
     const real rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*v->rrrrs_w_1_in_axes4_z;
-    const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_3_in_axes4_x*v->rrrrs_w_3_in_axes4_x +
-        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x;
-    const real rrrrs_d_G_in_axes4_xy =
-        m->rrrrs_d_Gamma_4_in_axes4_y[i]*v->rrrrs_w_3_in_axes4_x +
-        m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x;
+    const real rrrrs_d_G_in_axes4_xx = rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y*rrrrs_d_Gamma_3_in_axes4_x;
+    const real rrrrs_d_G_in_axes4_xy = m->rrrrs_d_Gamma_4_in_axes4_y[i]*rrrrs_w_4_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y*m->rrrrs_d_Gamma_4_in_axes4_y[i];
     /* (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances
        the leg's inertia and weight along all degrees of freedom */
     const real rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*m->rrrrs_w_4_in_axes4_y[i];
     /* (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(v->rrrrs_w_3_in_axes4_x +
-        rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx;
+    const real rrrrs_d_c_in_axes4_xx = m->rrrrs_h_4_in_spec4_y[i]*(rrrrs_w_4_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y) - rrrrs_d_G_in_axes4_xx;
     const real rrrrs_d_c_in_axes4_xy = m->rrrrs_d_phi_4_t[i] - rrrrs_d_G_in_axes4_xy;
     const real rrrrs_d_c_in_axes4_zz =
         v->rrrrs_e_1_in_axes4_y*m->rrrrs_h_4_in_spec4_x[i]*v->rrrrs_w_1_in_axes4_z -
@@ -3042,8 +3037,8 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
         m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
         v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
-        v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-        rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z*v->rrrrs_w_3_in_axes4_x) -
+        v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z) -
         rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
     v->rrrrs_d_P_2_x = v->axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x +
         v->axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y +
@@ -3056,13 +3051,13 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z;
     /* (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the
        extra degree of freedom of joint 2 */
-    const real rrrrs_dy_2_P_2_t = rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_2_in_axes4_x +
-        v->rrrrs_r_2_in_axes4_y*v->rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x
-        - rrrrs_dy_2_Gamma_3);
-    v->rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t;
+    const real rrrrs_dy_2_P_2_t =
+        v->inv_rrrrs_r_3_in_axes4_y*v->rrrrs_r_2_in_axes4_y*(rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x
+        - rrrrs_dy_2_Gamma_3) - rrrrs_dy_2_G_in_axes4_y*v->rrrrs_r_2_in_axes4_x;
+    v->rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t;
     /* (M_ta) coupling block of M */
     v->rrrrs_M_ta_t = v->rrrrs_Q_xx*v->rrrrs_q_z - v->rrrrs_Q_xz*v->rrrrs_q_x;
-    v->rrrrs_M_ta_t_2 = v->rrrrs_Q_xy*v->rrrrs_q_x - v->rrrrs_Q_xx*v->rrrrs_q_y;
+    v->rrrrs_M_ta_t_2 = v->rrrrs_Q_xx*v->rrrrs_q_y - v->rrrrs_Q_xy*v->rrrrs_q_x;
     v->rrrrs_M_ta_t_3 = v->rrrrs_Q_yy*v->rrrrs_q_z - v->rrrrs_Q_yz*v->rrrrs_q_y;
     const real rrrrs_M_ta_t_4 = v->rrrrs_Q_yz*v->rrrrs_q_x;
     v->rrrrs_M_ta_t_5 = v->rrrrs_Q_xy*v->rrrrs_q_z - rrrrs_M_ta_t_4;
@@ -3075,8 +3070,8 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     v->rrrrs_M_aa_t_2 = v->rrrrs_M_ta_t_8*v->rrrrs_q_y - v->rrrrs_M_ta_t_5*v->rrrrs_q_z;
     v->rrrrs_M_aa_t_3 = v->rrrrs_M_ta_t_9*v->rrrrs_q_y - v->rrrrs_M_ta_t_6*v->rrrrs_q_z;
     v->rrrrs_M_aa_t_4 = v->rrrrs_M_ta_t*v->rrrrs_q_z - v->rrrrs_M_ta_t_8*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_2*v->rrrrs_q_z - v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
-    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_6*v->rrrrs_q_x - v->rrrrs_M_ta_t_2*v->rrrrs_q_y;
+    v->rrrrs_M_aa_t_5 = v->rrrrs_M_ta_t_2*v->rrrrs_q_z + v->rrrrs_M_ta_t_9*v->rrrrs_q_x;
+    v->rrrrs_M_aa_t_6 = v->rrrrs_M_ta_t_2*v->rrrrs_q_y + v->rrrrs_M_ta_t_6*v->rrrrs_q_x;
     /* (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform */
     v->rrrrs_M_ya_2_x = v->rrrrs_d_P_2_z*v->rrrrs_q_y - v->rrrrs_d_P_2_y*v->rrrrs_q_z;
     v->rrrrs_M_ya_2_y = v->rrrrs_d_P_2_x*v->rrrrs_q_z - v->rrrrs_d_P_2_z*v->rrrrs_q_x;
@@ -3101,13 +3096,12 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_2_in_axes2_zx = v->rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y;
     const real rrrrs_B_2_in_axes2_zy = v->rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x;
     /* (rrrrs-alpha_3) angular acceleration of link 3 */
-    const real rrrrs_alpha_3_in_axes3_x = v->rrrrs_zeta_3_in_axes3_x +
-        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_25 +
-        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_26;
+    const real rrrrs_alpha_3_in_axes3_x = rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_25 -
+        v->rrrrs_zeta_3_t + rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_26;
     const real rrrrs_alpha_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
         rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_25 -
         rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_26;
-    const real rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 + v->rrrrs_qdd_3;
+    const real rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - v->rrrrs_qdd_3_t;
     /* (rrrrs-B_3) acceleration tensor of link 3 */
     v->rrrrs_B_3_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z;
     v->rrrrs_B_3_in_axes3_xz = v->rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y;
@@ -3221,7 +3215,7 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
        degrees of freedom */
     v->rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
     v->rrrrs_G_in_axes4_x =
-        -v->rrrrs_w_3_in_axes4_x*(v->rrrrs_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x -
+        v->inv_rrrrs_r_3_in_axes4_y*(v->rrrrs_G_in_axes4_y*v->rrrrs_r_3_in_axes4_x -
         v->rrrrs_N_3_in_axes3_z);
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -3942,9 +3936,9 @@ INLINE void any_sums_rrrrs(size_t k, size_t count, int add, const values_rrrrs *
     gather(&terms[7*count + k], add, v->rrrrs_M_ta_t_9);  /* M_ta_rrrrs_zz */
     gather(&terms[8*count + k], add, v->rrrrs_M_ta_t);  /* M_ta_xy_of_legs */
     gather(&terms[9*count + k], add, v->rrrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
-    gather(&terms[10*count + k], add, -v->rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
+    gather(&terms[10*count + k], add, v->rrrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v->rrrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[12*count + k], add, -v->rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
+    gather(&terms[12*count + k], add, v->rrrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v->rrrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) rotational block of M */
     gather(&terms[14*count + k], add, v->rrrrs_M_aa_t);  /* M_aa_xx_of_legs */
@@ -4009,15 +4003,15 @@ INLINE void any_entries_rrrrs_3(size_t k, size_t count, const values_rrrrs *v, r
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[6*count + k] = 1;
     /* (rrrrs-w_3) reciprocal vector 2 */
-    o[7*count + k] = v->rrrrs_w_3_x;
-    o[8*count + k] = v->rrrrs_w_3_y;
-    o[9*count + k] = v->rrrrs_w_3_z;
+    o[7*count + k] = -v->rrrrs_w_3_t_8;
+    o[8*count + k] = -v->rrrrs_w_3_t_9;
+    o[9*count + k] = -v->rrrrs_w_3_t_10;
     /* (rrrrs-H_a_3) moment of the column's unit force about the platform origin */
     o[10*count + k] = v->rrrrs_H_a_3_x;
     o[11*count + k] = v->rrrrs_H_a_3_y;
     o[12*count + k] = v->rrrrs_H_a_3_z;
     /* (rrrrs-w_3) */
-    o[13*count + k] = v->rrrrs_w_3_t_7;
+    o[13*count + k] = -v->rrrrs_w_3_t_7;
 }
 
 INLINE void any_singular_rrrrs(const prepared *m, size_t i, size_t k, const values_rrrrs *v, real
@@ -4153,8 +4147,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     o[30*count + k] = (((v.rrrrs_P_2_o + v.rrrrs_d_P_2_x) + (v.rrrrs_d_P_2_y +
         (v.rrrrs_d_P_2_z + v.rrrrs_M_ya_2_x))) + ((v.rrrrs_M_ya_2_y + v.rrrrs_M_ya_2_z) +
         (v.rrrrs_dy_2_P_2 + (v.rrrrs_w_1_x + v.rrrrs_w_1_y)))) + (((v.rrrrs_w_1_z +
-        v.rrrrs_H_a_1_x) + (v.rrrrs_H_a_1_y + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) +
-        ((v.rrrrs_w_3_y + (v.rrrrs_w_3_z + v.rrrrs_H_a_3_x)) + (v.rrrrs_H_a_3_y +
+        v.rrrrs_H_a_1_x) + (v.rrrrs_H_a_1_y + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_t_8))) +
+        ((v.rrrrs_w_3_t_9 + (v.rrrrs_w_3_t_10 + v.rrrrs_H_a_3_x)) + (v.rrrrs_H_a_3_y +
         (v.rrrrs_H_a_3_z + v.rrrrs_w_3_t_7))));
 }
 
@@ -4213,17 +4207,17 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[26*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
     gather(&terms[27*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
     gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[28*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_t */
-    gather(&terms[29*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_t_2 */
+    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[30*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_t_3 */
+    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) */
     gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
     gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[31*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
+    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     any_sums_rrrs(k, count, add, &v, terms + 20*count);
     any_entries_rrrs(k, count, &v, o);
@@ -4253,20 +4247,17 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_t = sums[28*w + k];
     const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y - M_ta_t;
-    const real M_ta_t_2 = sums[29*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
     const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z - M_ta_t_2;
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_t_3 = sums[30*w + k];
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_t_3 + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
@@ -4284,9 +4275,8 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
     const real J_star_yz = s[26*w + k];
-    const real M_aa_t = sums[31*w + k];
     const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_t + M_aa_yz_of_legs;
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
@@ -4366,12 +4356,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)28)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[32] CLEARED;
-    real terms_rrrrs[32*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[32*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrrrs[SUMS_OF_dynamics*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[31*LEGS(LEGS_OF_rrrrs)]
+        CLEARED;
+    real terms_rrrs[SUMS_OF_dynamics*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
@@ -4386,13 +4380,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         dynamics_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, Z, H, t);
     }
-    for (size_t n = 0; n < 32; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 32; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -4404,7 +4398,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[32*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrrrs[31*LANES];
     ALIGNED real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
@@ -4414,7 +4408,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 32*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4494,17 +4488,17 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[20*count + k], add, v.rrrs_M_ta_t_5);  /* M_ta_rrrs_yy */
     gather(&terms[21*count + k], add, v.rrrs_M_ta_t_9);  /* M_ta_rrrs_zz */
     gather(&terms[8*count + k], add, v.rrrs_M_ta_t);  /* M_ta_xy_of_legs */
-    gather(&terms[22*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_t */
-    gather(&terms[23*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_t_2 */
+    gather(&terms[9*count + k], add, v.rrrs_M_ta_t_2);  /* M_ta_xz_of_legs */
+    gather(&terms[10*count + k], add, v.rrrs_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v.rrrs_M_ta_t_6);  /* M_ta_yz_of_legs */
-    gather(&terms[24*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_t_3 */
+    gather(&terms[12*count + k], add, v.rrrs_M_ta_t_7);  /* M_ta_zx_of_legs */
     gather(&terms[13*count + k], add, v.rrrs_M_ta_t_8);  /* M_ta_zy_of_legs */
     /* (M_aa) */
     gather(&terms[14*count + k], add, v.rrrs_M_aa_t);  /* M_aa_xx_of_legs */
     gather(&terms[15*count + k], add, v.rrrs_M_aa_t_2);  /* M_aa_xy_of_legs */
     gather(&terms[16*count + k], add, v.rrrs_M_aa_t_3);  /* M_aa_xz_of_legs */
     gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
-    gather(&terms[25*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_t */
+    gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
@@ -4529,20 +4523,17 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
-    const real M_ta_t = sums[22*w + k];
     const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
-    const real M_ta_xz = M_ta_xz_of_legs - h_star_y - M_ta_t;
-    const real M_ta_t_2 = sums[23*w + k];
+    const real M_ta_xz = -h_star_y - M_ta_xz_of_legs;
     const real M_ta_yx_of_legs = sums[10*w + k];
-    const real M_ta_yx = M_ta_yx_of_legs - h_star_z - M_ta_t_2;
+    const real M_ta_yx = -h_star_z - M_ta_yx_of_legs;
     const real M_ta_yy = M_ta_rrrs_yy + M_ta_rrrrs_yy;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
-    const real M_ta_t_3 = sums[24*w + k];
     const real M_ta_zx_of_legs = sums[12*w + k];
-    const real M_ta_zx = h_star_y - M_ta_t_3 + M_ta_zx_of_legs;
+    const real M_ta_zx = h_star_y - M_ta_zx_of_legs;
     const real M_ta_zy_of_legs = sums[13*w + k];
     const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
     const real M_ta_zz = M_ta_rrrs_zz + M_ta_rrrrs_zz;
@@ -4560,9 +4551,8 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
     const real J_star_yz = s[26*w + k];
-    const real M_aa_t = sums[25*w + k];
     const real M_aa_yz_of_legs = sums[18*w + k];
-    const real M_aa_yz = J_star_yz - M_aa_t + M_aa_yz_of_legs;
+    const real M_aa_yz = J_star_yz - M_aa_yz_of_legs;
     const real J_star_zz = s[23*w + k];
     const real M_aa_zz_of_legs = sums[19*w + k];
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
@@ -4614,11 +4604,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)22)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[26] CLEARED;
-    real terms_rrrrs[26*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[26*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rrrrs[SUMS_OF_M*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[16*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[SUMS_OF_M*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrrs))
@@ -4632,13 +4625,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         M_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, M, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -4649,7 +4642,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrrrs[16*LANES];
     ALIGNED real o_rrrs[2*LANES];
     IN_VECTORS(LANES)
@@ -4657,7 +4650,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4765,11 +4758,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rrrrs[SUMS_OF_Z*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[4*LEGS(LEGS_OF_rrrrs)] CLEARED;
+    real terms_rrrs[SUMS_OF_Z*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rrrrs))
@@ -4783,13 +4779,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         Z_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, Z, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -4801,7 +4797,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrrrs[4*LANES];
     ALIGNED real o_rrrs[2*LANES];
     IN_VECTORS(LANES)
@@ -4810,7 +4806,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4847,8 +4843,8 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     o[14*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
-        (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_x + (v.rrrrs_w_3_y +
-        v.rrrrs_w_3_z)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
+        (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_t_8 + (v.rrrrs_w_3_t_9 +
+        v.rrrrs_w_3_t_10)) + ((v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y) + (v.rrrrs_H_a_3_z +
         v.rrrrs_w_3_t_7)));
 }
 
@@ -4887,9 +4883,11 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
         + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] CLEARED;
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(H, NV*NU);
@@ -4914,7 +4912,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rrrrs[17*LANES];
     ALIGNED real o_rrrs[15*LANES];
     clear(H, NV*NU*LANES);
@@ -5180,12 +5178,17 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rrrrs[6*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrrrs[SUMS_OF_required*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[17*LEGS(LEGS_OF_rrrrs)]
+        CLEARED;
+    real terms_rrrs[SUMS_OF_required*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[14*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     clear(H, NV*NU);
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -5206,13 +5209,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         required_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, required, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         required_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -5224,7 +5227,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrrrs[17*LANES];
     ALIGNED real o_rrrs[14*LANES];
     clear(H, NV*NU*LANES);
@@ -5234,7 +5237,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -5336,9 +5339,11 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
@@ -5362,7 +5367,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rrrrs[7*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
@@ -5406,12 +5411,12 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t
     const real rrrrs_yd_2 = V[6*w + j];
     o[1*count + k] = rrrrs_yd_2;
     /* (rrrrs-qd_3) rate of joint 3 */
-    o[2*count + k] = v.rrrrs_qd_3;
+    o[2*count + k] = -v.rrrrs_qd_3_t;
     /* (rrrrs-qd_4) rate of joint 4 */
     o[3*count + k] = v.rrrrs_qd_4;
     o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
-    o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3 + v.rrrrs_qd_4);
+    o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3_t + v.rrrrs_qd_4);
 }
 
 INLINE void joint_rates_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -5454,10 +5459,12 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t i, size_t k, size_t at, size
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
@@ -5481,7 +5488,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rrrrs[7*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
@@ -5527,12 +5534,12 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     const real rrrrs_ydd_2 = A[6*w + j];
     o[1*count + k] = rrrrs_ydd_2;
     /* (rrrrs-qdd_3) acceleration of joint 3 */
-    o[2*count + k] = v.rrrrs_qdd_3;
+    o[2*count + k] = -v.rrrrs_qdd_3_t;
     /* (rrrrs-qdd_4) acceleration of joint 4 */
     o[3*count + k] = v.rrrrs_qdd_4;
     o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
-    o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3 + v.rrrrs_qdd_4);
+    o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3_t + v.rrrrs_qdd_4);
 }
 
 INLINE void joint_accelerations_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const
@@ -5576,10 +5583,12 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t i, size_t k, size_t 
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrrrs[7*LEGS(LEGS_OF_rrrrs)] CLEARED;
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] CLEARED;
     values v;
@@ -5603,7 +5612,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rrrrs[7*LANES];
     ALIGNED real o_rrrs[6*LANES];
     IN_VECTORS(LANES)
@@ -5669,9 +5678,9 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     o[4*count + k] = v.rrrrs_w_1_y;
     o[5*count + k] = v.rrrrs_w_1_z;
     /* (rrrrs-w_3) reciprocal vector 2 */
-    o[6*count + k] = v.rrrrs_w_3_x;
-    o[7*count + k] = v.rrrrs_w_3_y;
-    o[8*count + k] = v.rrrrs_w_3_z;
+    o[6*count + k] = -v.rrrrs_w_3_t_8;
+    o[7*count + k] = -v.rrrrs_w_3_t_9;
+    o[8*count + k] = -v.rrrrs_w_3_t_10;
     o[9*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 10*count);
 }
@@ -5748,10 +5757,12 @@ INLINE void legs_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t coun
     t->singular[k] += o[10*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rrrrs[11*LEGS(LEGS_OF_rrrrs)] CLEARED;
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] CLEARED;
     clear(actuator, 21);
@@ -5831,7 +5842,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         v.rrrrs_g_in_axes1_x*rrrrs_potential_t_10 +
         m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9;
     /* (potential) */
-    gather(&terms[0*count + k], add, -rrrrs_potential_t_11);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, rrrrs_potential_t_11);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
         TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
@@ -5866,7 +5877,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         m->rrrs_potential_t_4[i] + rrrs_h_2_in_axes1_z + v.rrrs_h_2_t_19*rrrs_potential_t_5 -
         v.rrrs_h_2_t_20*rrrs_potential_t_6);
     /* (potential) */
-    gather(&terms[1*count + k], add, rrrs_potential_t_7);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rrrs_potential_t_7);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
         TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
@@ -5878,17 +5889,21 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[18*w + k];
-    const real potential_t_2 = sums[1*w + k];
-    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[2] CLEARED;
-    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrrrs[SUMS_OF_potential*LEGS(LEGS_OF_rrrrs)] CLEARED, o_rrrrs[2*LEGS(LEGS_OF_rrrrs)]
+        CLEARED;
+    real terms_rrrs[SUMS_OF_potential*LEGS(LEGS_OF_rrrs)] CLEARED, o_rrrs[2*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrrrs); i += BESIDE(LEGS_OF_rrrrs)) {
@@ -5908,13 +5923,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         any_place_rrrs_2(0, i, LEGS(LEGS_OF_rrrs), o_rrrs, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }
@@ -5973,8 +5988,8 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     o[16*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 17*count);
     o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
-        v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_x))) + (((v.rrrrs_w_3_y +
-        v.rrrrs_w_3_z) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
+        v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_t_8))) + (((v.rrrrs_w_3_t_9 +
+        v.rrrrs_w_3_t_10) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
         v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_h_3_t_23)));
 }
 
@@ -6071,12 +6086,17 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[2] CLEARED;
-    real terms_rrrrs[2*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)] CLEARED;
-    real terms_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rrrrs[SUMS_OF_condition*LEGS(LEGS_OF_rrrrs)] = {0}, o_rrrrs[19*LEGS(LEGS_OF_rrrrs)]
+        CLEARED;
+    real terms_rrrs[SUMS_OF_condition*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)]
+        CLEARED;
     clear(H, NV*NU);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -6091,13 +6111,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrrrs; ++i) {
         condition_place_rrrrs(1, 0, i, LEGS(LEGS_OF_rrrrs), o_rrrrs, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrrrs + n*LEGS(LEGS_OF_rrrrs), LEGS_OF_rrrrs);
     }
     for (size_t i = 0; i < LEGS_OF_rrrs; ++i) {
         condition_place_rrrs(1, i, 0, i, LEGS(LEGS_OF_rrrs), o_rrrs, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
             sums[n] += terms_rrrs[n*LEGS(LEGS_OF_rrrs) + leg];
         }

@@ -20,6 +20,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -1628,6 +1629,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1646,10 +1648,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1677,10 +1679,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1731,14 +1733,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1751,35 +1752,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1789,7 +1795,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -2271,7 +2278,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2683,10 +2690,10 @@ def _run_dynamics(m, X, V):
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
     M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_t,
-        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy,
-        M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x,
-        Z_a_rrrrs_y, Z_a_rrrrs_z,
+        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrrs_yz, M_ta_t_3,
+        M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy, M_aa_t,
+        M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x, Z_a_rrrrs_y,
+        Z_a_rrrrs_z,
     ) = [0.0] * 26
     for leg, k in legs[0]:
         (
@@ -2850,13 +2857,13 @@ def _run_dynamics(m, X, V):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y
+        rrrrs_w_3_t_8 = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-w_4) reciprocal vector 3
-        rrrrs_w_4_in_axes4_x = -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y
+        rrrrs_w_4_in_axes4_x = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_3_in_axes4_x*rrrrs_w_4_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -2876,15 +2883,15 @@ def _run_dynamics(m, X, V):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
@@ -2906,7 +2913,7 @@ def _run_dynamics(m, X, V):
         rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
         rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - rrrrs_qd_3_t
         # (rrrrs-W_3) centripetal tensor of link 3
         rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
         rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
@@ -2935,11 +2942,11 @@ def _run_dynamics(m, X, V):
             axis_z_rrrrs_axes4_z*rrrrs_u_1_z
         )
         # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
-        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_t = rrrrs_omega_1_t_2*rrrrs_qd_3_t
+        rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
             rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
@@ -2992,7 +2999,7 @@ def _run_dynamics(m, X, V):
         # (rrrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
-        rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_qdd_3_o_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x
         # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
         rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
@@ -3004,17 +3011,17 @@ def _run_dynamics(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 +
-            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_o_in_axes3_y = (
         rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
             rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t
         rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y
-        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o_t
         rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
         rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
         rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
@@ -3028,8 +3035,8 @@ def _run_dynamics(m, X, V):
             rrrrs_zeta_4_t
         )
         rrrrs_alpha_4_o_in_axes4_z = (
-        rrrrs_qdd_3_o + rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y -
-            rrrrs_qdd_3_o*rrrrs_r_3_in_axes4_x)
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y + rrrrs_qdd_3_o_t*rrrrs_r_3_in_axes4_x) -
+            rrrrs_qdd_3_o_t
         )
         # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
         rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z
@@ -3198,15 +3205,16 @@ def _run_dynamics(m, X, V):
         rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
         rrrrs_d_Gamma_4_t_2 = rrrrs_d_Gamma_4_t*rrrrs_r_3_in_axes4_x
         rrrrs_d_Gamma_4_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_J_4_in_spec4_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_J_4_in_spec4_zz -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_4_t = (
-        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-rrrrs_r_2_in_axes4_x -
-            rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7)
+        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7 -
+            rrrrs_r_2_in_axes4_x)
         )
         rrrrs_dy_2_Gamma_4 = (
-        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
+        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t - rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrrs_mu_3_t = rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2 - rrrrs_bias_t_2)
@@ -3249,11 +3257,12 @@ def _run_dynamics(m, X, V):
         rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z
         # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_d_Gamma_3_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes3_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_Jc_3_in_axes3_zz -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_3 = (
-        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
+        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t - rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
@@ -3304,12 +3313,12 @@ def _run_dynamics(m, X, V):
         )
         # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_d_Gamma_2_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z - rrrrs_d_Gamma_4_t_2) -
-            rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes2_z -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_2 = (
-        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
+        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t -
             rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
@@ -3326,8 +3335,9 @@ def _run_dynamics(m, X, V):
         # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrrs_d_Gamma_1_t = rrrrs_D_1_4*rrrrs_w_4_in_axes4_y
         rrrrs_d_Gamma_1_in_axes4_x = (
-        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z + rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z
-            - rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z -
+            inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes1_z -
+            rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
         )
         rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t - rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_z
         rrrrs_d_Gamma_1_in_axes4_z = (
@@ -3338,19 +3348,20 @@ def _run_dynamics(m, X, V):
         rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_xx = (
-        rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
-            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_d_Gamma_3_in_axes4_x
         )
         rrrrs_d_G_in_axes4_xy = (
-        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
-            rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_d_Gamma_4_in_axes4_y
         )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
         # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
-        -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
+        inv_rrrrs_r_3_in_axes4_y*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x -
+            rrrrs_N_3_o_in_axes3_z)
         )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
@@ -3358,7 +3369,8 @@ def _run_dynamics(m, X, V):
         rrrrs_c_t_3 = rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2)
         # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_d_c_in_axes4_xx = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
+        rrrrs_h_4_in_spec4_y*(rrrrs_w_4_in_axes4_x - inv_rrrrs_r_3_in_axes4_y) -
+            rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
         rrrrs_d_c_in_axes4_zz = (
@@ -3449,8 +3461,8 @@ def _run_dynamics(m, X, V):
             rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
         )
         rrrrs_d_P_2_in_axes4_z = (
-        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-            rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x) +
+        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z) +
             rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
             rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
             rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
@@ -3469,11 +3481,10 @@ def _run_dynamics(m, X, V):
         )
         # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_dy_2_P_2_t = (
-        rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
-            rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
-            - rrrrs_dy_2_Gamma_3)
+        inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
+            - rrrrs_dy_2_Gamma_3) - rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
-        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
         # (rrrrs-P_2_o) remainder of: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_P_2_o_t = (
         rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
@@ -3481,7 +3492,7 @@ def _run_dynamics(m, X, V):
         rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t
         # (M_ta) coupling block of M
         rrrrs_M_ta_t = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
-        rrrrs_M_ta_t_2 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_2 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
         rrrrs_M_ta_t_3 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
         rrrrs_M_ta_t_4 = rrrrs_Q_yz*rrrrs_q_x
         rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_z - rrrrs_M_ta_t_4
@@ -3494,8 +3505,8 @@ def _run_dynamics(m, X, V):
         rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_y - rrrrs_M_ta_t_5*rrrrs_q_z
         rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
         rrrrs_M_aa_t_4 = rrrrs_M_ta_t*rrrrs_q_z - rrrrs_M_ta_t_8*rrrrs_q_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z - rrrrs_M_ta_t_9*rrrrs_q_x
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_6*rrrrs_q_x - rrrrs_M_ta_t_2*rrrrs_q_y
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z + rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_2*rrrrs_q_y + rrrrs_M_ta_t_6*rrrrs_q_x
         # (Z_a) rotational part of Z
         rrrrs_Z_a_t = rrrrs_U_z*rrrrs_q_y - rrrrs_U_y*rrrrs_q_z
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
@@ -3509,9 +3520,9 @@ def _run_dynamics(m, X, V):
         rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
         rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
-        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
-        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
+        rrrrs_H_a_3_x = rrrrs_q_z*rrrrs_w_3_t_9 - rrrrs_q_y*rrrrs_w_3_t_10
+        rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
+        rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
@@ -3529,17 +3540,17 @@ def _run_dynamics(m, X, V):
         M_ta_rrrrs_yy += rrrrs_M_ta_t_5
         M_ta_rrrrs_zz += rrrrs_M_ta_t_9
         M_ta_rrrrs_xy += rrrrs_M_ta_t
-        M_ta_rrrrs_xz += rrrrs_M_ta_t_2
-        M_ta_rrrrs_yx += -rrrrs_M_ta_t_3
+        M_ta_t += rrrrs_M_ta_t_2
+        M_ta_t_2 += rrrrs_M_ta_t_3
         M_ta_rrrrs_yz += rrrrs_M_ta_t_6
-        M_ta_rrrrs_zx += -rrrrs_M_ta_t_7
+        M_ta_t_3 += rrrrs_M_ta_t_7
         M_ta_rrrrs_zy += rrrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
         M_aa_rrrrs_xz += rrrrs_M_aa_t_3
         M_aa_rrrrs_yy += rrrrs_M_aa_t_4
-        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_t += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrrs_x += rrrrs_U_x
@@ -3578,20 +3589,20 @@ def _run_dynamics(m, X, V):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
-        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
-        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t_8
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_9
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_10
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
     (
     M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_t_2, M_ta_rrrs_yy,
-        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz, Z_t_rrrs_x,
-        Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
+        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t_4, M_ta_t_5, M_ta_rrrs_yz, M_ta_t_6, M_ta_rrrs_zy,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t_2, M_aa_rrrs_zz,
+        Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
     ) = [0.0] * 26
     for leg, k in legs[1]:
         (
@@ -4140,17 +4151,17 @@ def _run_dynamics(m, X, V):
         M_ta_rrrs_yy += rrrs_M_ta_t_5
         M_ta_rrrs_zz += rrrs_M_ta_t_9
         M_ta_rrrs_xy += rrrs_M_ta_t
-        M_ta_t += rrrs_M_ta_t_2
-        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_t_4 += rrrs_M_ta_t_2
+        M_ta_t_5 += rrrs_M_ta_t_3
         M_ta_rrrs_yz += rrrs_M_ta_t_6
-        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_t_6 += rrrs_M_ta_t_7
         M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_t += rrrs_M_aa_t_5
+        M_aa_t_2 += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
         # (Z_t) translational part of Z
         Z_t_rrrs_x += rrrs_U_x
@@ -4186,11 +4197,11 @@ def _run_dynamics(m, X, V):
     # (M_ta) coupling block of M
     M_ta_xx = -M_ta_rrrrs_yy - M_ta_rrrrs_zz - M_ta_rrrs_yy - M_ta_rrrs_zz
     M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrrs_xz - M_ta_t - h_star_y
-    M_ta_yx = M_ta_rrrrs_yx - M_ta_t_2 - h_star_z
+    M_ta_xz = -M_ta_t - M_ta_t_4 - h_star_y
+    M_ta_yx = -M_ta_t_2 - M_ta_t_5 - h_star_z
     M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
     M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrrs_zx + h_star_y - M_ta_t_3
+    M_ta_zx = h_star_y - M_ta_t_3 - M_ta_t_6
     M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
     M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
@@ -4198,7 +4209,7 @@ def _run_dynamics(m, X, V):
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrrs_yz - M_aa_t
+    M_aa_yz = J_star_yz - M_aa_t - M_aa_t_2
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
     Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
@@ -4327,9 +4338,9 @@ def _run_M(m, X):
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     (
     M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_t,
-        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yz,
-        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy,
-        M_aa_rrrrs_yz, M_aa_rrrrs_zz,
+        M_ta_rrrrs_yy, M_ta_rrrrs_zz, M_ta_rrrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrrs_yz, M_ta_t_3,
+        M_ta_rrrrs_zy, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_rrrrs_xz, M_aa_rrrrs_yy, M_aa_t,
+        M_aa_rrrrs_zz,
     ) = [0.0] * 20
     for leg, k in legs[0]:
         (
@@ -4475,10 +4486,10 @@ def _run_M(m, X):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y
         # (rrrrs-w_4) reciprocal vector 3
-        rrrrs_w_4_in_axes4_x = -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y
+        rrrrs_w_4_in_axes4_x = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_3_in_axes4_x*rrrrs_w_4_in_axes4_y
         # (rrrrs-D_1_4) inertia of joint 4 along joint 1
         rrrrs_D_1_4 = (
         rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x + rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y
@@ -4547,39 +4558,42 @@ def _run_M(m, X):
         rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
         rrrrs_d_Gamma_4_t_2 = rrrrs_d_Gamma_4_t*rrrrs_r_3_in_axes4_x
         rrrrs_d_Gamma_4_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_J_4_in_spec4_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_J_4_in_spec4_zz -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_4_t = (
-        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-rrrrs_r_2_in_axes4_x -
-            rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7)
+        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7 -
+            rrrrs_r_2_in_axes4_x)
         )
         rrrrs_dy_2_Gamma_4 = (
-        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
+        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t - rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_d_Gamma_3_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes3_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_Jc_3_in_axes3_zz -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_3 = (
-        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
+        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t - rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_d_Gamma_2_in_axes4_x = (
-        rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z - rrrrs_d_Gamma_4_t_2) -
-            rrrrs_h_4_in_spec4_y
+        -rrrrs_h_4_in_spec4_y - inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes2_z -
+            rrrrs_d_Gamma_4_t_2)
         )
         # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_2 = (
-        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
+        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t -
             rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
         )
         # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrrs_d_Gamma_1_t = rrrrs_D_1_4*rrrrs_w_4_in_axes4_y
         rrrrs_d_Gamma_1_in_axes4_x = (
-        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z + rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes1_z
-            - rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
+        rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_z -
+            inv_rrrrs_r_3_in_axes4_y*(rrrrs_L_c_3_2_in_axes1_z -
+            rrrrs_d_Gamma_1_t*rrrrs_r_3_in_axes4_x)
         )
         rrrrs_d_Gamma_1_in_axes4_y = rrrrs_d_Gamma_1_t - rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_z
         rrrrs_d_Gamma_1_in_axes4_z = (
@@ -4590,18 +4604,19 @@ def _run_M(m, X):
         rrrrs_d_G_in_axes4_zx = rrrrs_d_Gamma_1_in_axes4_x*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_zy = rrrrs_d_Gamma_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_d_G_in_axes4_xx = (
-        rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
-            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_d_Gamma_3_in_axes4_x
         )
         rrrrs_d_G_in_axes4_xy = (
-        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
-            rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_d_Gamma_4_in_axes4_y
         )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
         # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrrs_d_c_in_axes4_xx = (
-        rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
+        rrrrs_h_4_in_spec4_y*(rrrrs_w_4_in_axes4_x - inv_rrrrs_r_3_in_axes4_y) -
+            rrrrs_d_G_in_axes4_xx
         )
         rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
         rrrrs_d_c_in_axes4_zz = (
@@ -4665,8 +4680,8 @@ def _run_M(m, X):
             rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
         )
         rrrrs_d_P_2_in_axes4_z = (
-        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
-            rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x) +
+        rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
+            inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z) +
             rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
             rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
             rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
@@ -4685,14 +4700,13 @@ def _run_M(m, X):
         )
         # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         rrrrs_dy_2_P_2_t = (
-        rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
-            rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
-            - rrrrs_dy_2_Gamma_3)
+        inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
+            - rrrrs_dy_2_Gamma_3) - rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x
         )
-        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
         # (M_ta) coupling block of M
         rrrrs_M_ta_t = rrrrs_Q_xx*rrrrs_q_z - rrrrs_Q_xz*rrrrs_q_x
-        rrrrs_M_ta_t_2 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_2 = rrrrs_Q_xx*rrrrs_q_y - rrrrs_Q_xy*rrrrs_q_x
         rrrrs_M_ta_t_3 = rrrrs_Q_yy*rrrrs_q_z - rrrrs_Q_yz*rrrrs_q_y
         rrrrs_M_ta_t_4 = rrrrs_Q_yz*rrrrs_q_x
         rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_z - rrrrs_M_ta_t_4
@@ -4705,8 +4719,8 @@ def _run_M(m, X):
         rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_y - rrrrs_M_ta_t_5*rrrrs_q_z
         rrrrs_M_aa_t_3 = rrrrs_M_ta_t_9*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
         rrrrs_M_aa_t_4 = rrrrs_M_ta_t*rrrrs_q_z - rrrrs_M_ta_t_8*rrrrs_q_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z - rrrrs_M_ta_t_9*rrrrs_q_x
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_6*rrrrs_q_x - rrrrs_M_ta_t_2*rrrrs_q_y
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_2*rrrrs_q_z + rrrrs_M_ta_t_9*rrrrs_q_x
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_2*rrrrs_q_y + rrrrs_M_ta_t_6*rrrrs_q_x
         # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
         rrrrs_M_ya_2_x = rrrrs_d_P_2_z*rrrrs_q_y - rrrrs_d_P_2_y*rrrrs_q_z
         rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
@@ -4728,17 +4742,17 @@ def _run_M(m, X):
         M_ta_rrrrs_yy += rrrrs_M_ta_t_5
         M_ta_rrrrs_zz += rrrrs_M_ta_t_9
         M_ta_rrrrs_xy += rrrrs_M_ta_t
-        M_ta_rrrrs_xz += rrrrs_M_ta_t_2
-        M_ta_rrrrs_yx += -rrrrs_M_ta_t_3
+        M_ta_t += rrrrs_M_ta_t_2
+        M_ta_t_2 += rrrrs_M_ta_t_3
         M_ta_rrrrs_yz += rrrrs_M_ta_t_6
-        M_ta_rrrrs_zx += -rrrrs_M_ta_t_7
+        M_ta_t_3 += rrrrs_M_ta_t_7
         M_ta_rrrrs_zy += rrrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrrs_xx += rrrrs_M_aa_t
         M_aa_rrrrs_xy += rrrrs_M_aa_t_2
         M_aa_rrrrs_xz += rrrrs_M_aa_t_3
         M_aa_rrrrs_yy += rrrrs_M_aa_t_4
-        M_aa_rrrrs_yz += rrrrs_M_aa_t_5
+        M_aa_t += rrrrs_M_aa_t_5
         M_aa_rrrrs_zz += rrrrs_M_aa_t_6
         # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 2
         out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
@@ -4758,8 +4772,8 @@ def _run_M(m, X):
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
     (
     M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_t_2, M_ta_rrrs_yy,
-        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t, M_ta_t_2, M_ta_rrrs_yz, M_ta_t_3, M_ta_rrrs_zy,
-        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t, M_aa_rrrs_zz,
+        M_ta_rrrs_zz, M_ta_rrrs_xy, M_ta_t_4, M_ta_t_5, M_ta_rrrs_yz, M_ta_t_6, M_ta_rrrs_zy,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_t_2, M_aa_rrrs_zz,
     ) = [0.0] * 20
     for leg, k in legs[1]:
         (
@@ -5013,17 +5027,17 @@ def _run_M(m, X):
         M_ta_rrrs_yy += rrrs_M_ta_t_5
         M_ta_rrrs_zz += rrrs_M_ta_t_9
         M_ta_rrrs_xy += rrrs_M_ta_t
-        M_ta_t += rrrs_M_ta_t_2
-        M_ta_t_2 += rrrs_M_ta_t_3
+        M_ta_t_4 += rrrs_M_ta_t_2
+        M_ta_t_5 += rrrs_M_ta_t_3
         M_ta_rrrs_yz += rrrs_M_ta_t_6
-        M_ta_t_3 += rrrs_M_ta_t_7
+        M_ta_t_6 += rrrs_M_ta_t_7
         M_ta_rrrs_zy += rrrs_M_ta_t_8
         # (M_aa) rotational block of M
         M_aa_rrrs_xx += rrrs_M_aa_t
         M_aa_rrrs_xy += rrrs_M_aa_t_2
         M_aa_rrrs_xz += rrrs_M_aa_t_3
         M_aa_rrrs_yy += rrrs_M_aa_t_4
-        M_aa_t += rrrs_M_aa_t_5
+        M_aa_t_2 += rrrs_M_aa_t_5
         M_aa_rrrs_zz += rrrs_M_aa_t_6
     # (M_tt) translational block of M
     M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
@@ -5035,11 +5049,11 @@ def _run_M(m, X):
     # (M_ta) coupling block of M
     M_ta_xx = -M_ta_rrrrs_yy - M_ta_rrrrs_zz - M_ta_rrrs_yy - M_ta_rrrs_zz
     M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
-    M_ta_xz = M_ta_rrrrs_xz - M_ta_t - h_star_y
-    M_ta_yx = M_ta_rrrrs_yx - M_ta_t_2 - h_star_z
+    M_ta_xz = -M_ta_t - M_ta_t_4 - h_star_y
+    M_ta_yx = -M_ta_t_2 - M_ta_t_5 - h_star_z
     M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
     M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
-    M_ta_zx = M_ta_rrrrs_zx + h_star_y - M_ta_t_3
+    M_ta_zx = h_star_y - M_ta_t_3 - M_ta_t_6
     M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
     M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
@@ -5047,7 +5061,7 @@ def _run_M(m, X):
     M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
     M_aa_xz = J_star_xz + M_aa_rrrrs_xz + M_aa_rrrs_xz
     M_aa_yy = J_star_yy + M_aa_rrrrs_yy + M_aa_rrrs_yy
-    M_aa_yz = J_star_yz + M_aa_rrrrs_yz - M_aa_t
+    M_aa_yz = J_star_yz - M_aa_t - M_aa_t_2
     M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (M_tt) translational block of M
     out_M[0] = M_tt_xx
@@ -5337,7 +5351,7 @@ def _run_Z(m, X, V):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -5357,15 +5371,15 @@ def _run_Z(m, X, V):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
@@ -5387,7 +5401,7 @@ def _run_Z(m, X, V):
         rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
         rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - rrrrs_qd_3_t
         # (rrrrs-W_3) centripetal tensor of link 3
         rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
         rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
@@ -5416,11 +5430,11 @@ def _run_Z(m, X, V):
             axis_z_rrrrs_axes4_z*rrrrs_u_1_z
         )
         # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
-        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_t = rrrrs_omega_1_t_2*rrrrs_qd_3_t
+        rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
             rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
@@ -5473,7 +5487,7 @@ def _run_Z(m, X, V):
         # (rrrrs-qdd_1_o) remainder of: acceleration of joint 1
         rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
-        rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_qdd_3_o_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x
         # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
         rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
         rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
@@ -5485,17 +5499,17 @@ def _run_Z(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 +
-            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_o_in_axes3_y = (
         rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
             rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t
         rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y
-        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o_t
         rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
         rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
         rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
@@ -5509,8 +5523,8 @@ def _run_Z(m, X, V):
             rrrrs_zeta_4_t
         )
         rrrrs_alpha_4_o_in_axes4_z = (
-        rrrrs_qdd_3_o + rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y -
-            rrrrs_qdd_3_o*rrrrs_r_3_in_axes4_x)
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y + rrrrs_qdd_3_o_t*rrrrs_r_3_in_axes4_x) -
+            rrrrs_qdd_3_o_t
         )
         # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
         rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z
@@ -5711,7 +5725,8 @@ def _run_Z(m, X, V):
         # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_o_in_axes4_x = (
-        -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
+        inv_rrrrs_r_3_in_axes4_y*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x -
+            rrrrs_N_3_o_in_axes3_z)
         )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
@@ -6371,19 +6386,19 @@ def _run_H(m, X):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y
+        rrrrs_w_3_t_8 = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
         rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
         rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
-        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
-        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
+        rrrrs_H_a_3_x = rrrrs_q_z*rrrrs_w_3_t_9 - rrrrs_q_y*rrrrs_w_3_t_10
+        rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
+        rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
@@ -6401,15 +6416,15 @@ def _run_H(m, X):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
-        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
-        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t_8
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_9
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_10
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
@@ -6855,11 +6870,11 @@ def _run_required(m, X, V, A):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y
+        rrrrs_w_3_t_8 = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -6879,15 +6894,15 @@ def _run_required(m, X, V, A):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
@@ -6909,7 +6924,7 @@ def _run_required(m, X, V, A):
         rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
         rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - rrrrs_qd_3_t
         # (rrrrs-W_3) centripetal tensor of link 3
         rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
         rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
@@ -6946,11 +6961,11 @@ def _run_required(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
         # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
-        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_t = rrrrs_omega_1_t_2*rrrrs_qd_3_t
+        rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
             rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
@@ -7007,10 +7022,10 @@ def _run_required(m, X, V, A):
         # (rrrrs-qdd_1) acceleration of joint 1
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
-        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_qdd_3_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_in_axes4_x
         # (rrrrs-qdd_4) acceleration of joint 4
         rrrrs_qdd_4 = (
-        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-alpha_1) angular acceleration of link 1
         rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
@@ -7025,14 +7040,14 @@ def _run_required(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_in_axes3_y = (
         rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
             rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
         )
-        rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
+        rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - rrrrs_qdd_3_t
         # (rrrrs-B_3) acceleration tensor of link 3
         rrrrs_B_3_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z
         rrrrs_B_3_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y
@@ -7235,7 +7250,7 @@ def _run_required(m, X, V, A):
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_in_axes4_x = (
-        -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
+        inv_rrrrs_r_3_in_axes4_y*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
         )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
@@ -7279,9 +7294,9 @@ def _run_required(m, X, V, A):
         rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
         rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
-        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
-        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
+        rrrrs_H_a_3_x = rrrrs_q_z*rrrrs_w_3_t_9 - rrrrs_q_y*rrrrs_w_3_t_10
+        rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
+        rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
@@ -7309,15 +7324,15 @@ def _run_required(m, X, V, A):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
-        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
-        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t_8
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_9
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_10
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
     R_t_t_4, R_t_t_5, R_t_t_6, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = [0.0] * 6
     for leg, k in legs[1]:
         (
@@ -8183,7 +8198,7 @@ def _run_joint_rates(m, X, V):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -8203,15 +8218,15 @@ def _run_joint_rates(m, X, V):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
@@ -8224,7 +8239,7 @@ def _run_joint_rates(m, X, V):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qd[_qd_rrrrs[1][leg]] = rrrrs_yd_2
         # (rrrrs-qd_3) rate of joint 3
-        out_qd[_qd_rrrrs[2][leg]] = rrrrs_qd_3
+        out_qd[_qd_rrrrs[2][leg]] = -rrrrs_qd_3_t
         # (rrrrs-qd_4) rate of joint 4
         out_qd[_qd_rrrrs[3][leg]] = rrrrs_qd_4
     for leg, k in legs[1]:
@@ -8602,7 +8617,7 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -8622,15 +8637,15 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
@@ -8651,7 +8666,7 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
         rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - rrrrs_qd_3_t
         # (rrrrs-omega_4) angular velocity of link 4
         rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
         # (rrrrs-W_4) centripetal tensor of link 4
@@ -8683,11 +8698,11 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
         # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
-        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_t = rrrrs_omega_1_t_2*rrrrs_qd_3_t
+        rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
             rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
@@ -8743,10 +8758,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrrs-qdd_1) acceleration of joint 1
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
-        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_qdd_3_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_in_axes4_x
         # (rrrrs-qdd_4) acceleration of joint 4
         rrrrs_qdd_4 = (
-        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         ok = (
         ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
@@ -8759,7 +8774,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qdd[_qdd_rrrrs[1][leg]] = rrrrs_ydd_2
         # (rrrrs-qdd_3) acceleration of joint 3
-        out_qdd[_qdd_rrrrs[2][leg]] = rrrrs_qdd_3
+        out_qdd[_qdd_rrrrs[2][leg]] = -rrrrs_qdd_3_t
         # (rrrrs-qdd_4) acceleration of joint 4
         out_qdd[_qdd_rrrrs[3][leg]] = rrrrs_qdd_4
     for leg, k in legs[1]:
@@ -9228,10 +9243,10 @@ def _run_legs(m, X, V, A):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_8 = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
         rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
@@ -9251,15 +9266,15 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_3) rate of joint 3
-        rrrrs_qd_3 = (
-        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_qd_3_t = (
+        inv_rrrrs_r_3_in_axes4_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
         # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
         rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
-            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z +
+            rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
         rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
@@ -9281,7 +9296,7 @@ def _run_legs(m, X, V, A):
         rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
         rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        rrrrs_omega_3_in_axes3_z = rrrrs_yd_2 - rrrrs_qd_3_t
         # (rrrrs-W_3) centripetal tensor of link 3
         rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
         rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
@@ -9318,11 +9333,11 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
         # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
-        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        rrrrs_zeta_3_t = rrrrs_omega_1_t_2*rrrrs_qd_3_t
+        rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 -
+        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
             rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
         )
         rrrrs_beta_3_in_axes3_y = (
@@ -9379,10 +9394,10 @@ def _run_legs(m, X, V, A):
         # (rrrrs-qdd_1) acceleration of joint 1
         rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-qdd_3) acceleration of joint 3
-        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_qdd_3_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_in_axes4_x
         # (rrrrs-qdd_4) acceleration of joint 4
         rrrrs_qdd_4 = (
-        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-alpha_1) angular acceleration of link 1
         rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
@@ -9397,14 +9412,14 @@ def _run_legs(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 +
-            rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26
+        rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_in_axes3_y = (
         rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
             rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
         )
-        rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
+        rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - rrrrs_qdd_3_t
         # (rrrrs-B_3) acceleration tensor of link 3
         rrrrs_B_3_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z
         rrrrs_B_3_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y
@@ -9582,7 +9597,7 @@ def _run_legs(m, X, V, A):
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         rrrrs_G_in_axes4_x = (
-        -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
+        inv_rrrrs_r_3_in_axes4_y*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
         )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
         rrrrs_c_t = rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x
@@ -9634,9 +9649,9 @@ def _run_legs(m, X, V, A):
         out_actuator[_actuator_rrrrs[1][leg]] = rrrrs_w_1_y
         out_actuator[_actuator_rrrrs[2][leg]] = rrrrs_w_1_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_actuator[_actuator_rrrrs[3][leg]] = rrrrs_w_3_x
-        out_actuator[_actuator_rrrrs[4][leg]] = rrrrs_w_3_y
-        out_actuator[_actuator_rrrrs[5][leg]] = rrrrs_w_3_z
+        out_actuator[_actuator_rrrrs[3][leg]] = -rrrrs_w_3_t_8
+        out_actuator[_actuator_rrrrs[4][leg]] = -rrrrs_w_3_t_9
+        out_actuator[_actuator_rrrrs[5][leg]] = -rrrrs_w_3_t_10
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
@@ -10102,7 +10117,7 @@ def _run_potential(m, X):
     gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y) + gravity_z*(h_star_z +
         m_star*t_z)
     )
-    potential_rrrrs, = [0.0] * 1
+    potential_t_3, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
@@ -10233,7 +10248,7 @@ def _run_potential(m, X):
             0.0)
         )
         # (potential) potential energy
-        potential_rrrrs += -rrrrs_potential_t_11
+        potential_t_3 += rrrrs_potential_t_11
     potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -10334,7 +10349,7 @@ def _run_potential(m, X):
         # (potential) potential energy
         potential_t_2 += rrrs_potential_t_7
     # (potential) potential energy
-    potential = potential_rrrrs - potential_t - potential_t_2
+    potential = -potential_t - potential_t_2 - potential_t_3
     # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -10524,11 +10539,11 @@ def _run_condition(m, X):
         axis_x_rrrrs_axes4_z = (
         axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
         )
-        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
-        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
-        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        inv_rrrrs_r_3_in_axes4_y = 1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = inv_rrrrs_r_3_in_axes4_y*rrrrs_r_2_in_axes4_y
+        rrrrs_w_3_t_8 = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_pivot_size = abs(rrrrs_h_3_t_11)
         rrrrs_pivot_size_2 = abs(rrrrs_h_3_t_22)
@@ -10544,9 +10559,9 @@ def _run_condition(m, X):
         rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
         rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
-        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
-        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
+        rrrrs_H_a_3_x = rrrrs_q_z*rrrrs_w_3_t_9 - rrrrs_q_y*rrrrs_w_3_t_10
+        rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
+        rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         # (spread) rms distance of the platform points from their centroid
         rrrrs_spread_t = b_c_in_platform_x - rrrrs_platform_point_x
         rrrrs_spread_t_2 = b_c_in_platform_y - rrrrs_platform_point_y
@@ -10575,15 +10590,15 @@ def _run_condition(m, X):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
-        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
-        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t_8
+        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_9
+        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_10
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
         # (rrrrs-w_3) reciprocal vector 2
-        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+        out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
         out_reach[_reach_rrrrs[0][leg]] = rrrrs_h_3_t_23

@@ -1634,11 +1634,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)8)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[8] CLEARED, sums[9] CLEARED;
-    real terms_prr[9*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_prr[SUMS_OF_dynamics*LEGS(LEGS_OF_prr)] CLEARED, o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     dynamics_before(m, 1, 0, X, V, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_prr))
@@ -1648,7 +1651,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         any_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     dynamics_between(m, 1, 0, &v, s);
@@ -1658,7 +1661,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[8*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_prr[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1666,7 +1669,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         dynamics_before(m, LANES, k, X, V, &v, s);
         dynamics_between(m, LANES, k, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1738,10 +1741,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)5)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[5] CLEARED, sums[6] CLEARED;
-    real terms_prr[6*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_prr[SUMS_OF_M*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     M_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_prr))
@@ -1751,7 +1757,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         any_place_prr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -1760,14 +1766,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[5*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_prr[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         M_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1831,10 +1837,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)6)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[6] CLEARED, sums[3] CLEARED;
-    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_prr[SUMS_OF_Z*LEGS(LEGS_OF_prr)] CLEARED, o_prr[2*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_prr))
@@ -1844,7 +1853,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         any_place_prr_2(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     Z_between(m, 1, 0, &v, s);
@@ -1854,7 +1863,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_prr[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1862,7 +1871,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before(m, LANES, k, X, V, &v, s);
         Z_between(m, LANES, k, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1891,9 +1900,11 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
 }
 
+#define PASSED_IN_H ((size_t)3)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -1909,7 +1920,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_prr[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2007,11 +2018,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)6)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[6] CLEARED, sums[3] CLEARED;
-    real terms_prr[3*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_prr[SUMS_OF_required*LEGS(LEGS_OF_prr)] CLEARED, o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
@@ -2024,7 +2038,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         required_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     required_between(m, 1, 0, A, &v, s);
@@ -2034,7 +2048,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[6*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_prr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2042,7 +2056,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before(m, LANES, k, X, V, &v, s);
         required_between(m, LANES, k, A, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2086,9 +2100,11 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)3)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_prr[4*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2104,7 +2120,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_prr[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2152,10 +2168,12 @@ INLINE void joint_rates_place_prr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)3)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
@@ -2171,7 +2189,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_prr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2218,10 +2236,12 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)3)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_prr[5*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, V, &v, s);
@@ -2237,7 +2257,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_prr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2296,10 +2316,12 @@ INLINE void legs_place_prr(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[5*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)3)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[3] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_prr[6*LEGS(LEGS_OF_prr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
@@ -2361,10 +2383,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)4)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[4] CLEARED, sums[1] CLEARED;
-    real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_prr[SUMS_OF_potential*LEGS(LEGS_OF_prr)] CLEARED, o_prr[LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prr); i += BESIDE(LEGS_OF_prr)) {
@@ -2377,7 +2402,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         potential_place_prr(0, i, LEGS(LEGS_OF_prr), o_prr, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -2445,11 +2470,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)3)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[3] CLEARED, sums[1] CLEARED;
-    real terms_prr[LEGS(LEGS_OF_prr)] CLEARED, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_prr[SUMS_OF_condition*LEGS(LEGS_OF_prr)] CLEARED, o_prr[8*LEGS(LEGS_OF_prr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_prr))
@@ -2459,7 +2487,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_prr; ++i) {
         condition_place_prr(1, i, 0, i, LEGS(LEGS_OF_prr), o_prr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_prr + n*LEGS(LEGS_OF_prr), LEGS_OF_prr);
     }
     condition_after(m, 1, 0, sums, lengths, t);

@@ -1711,11 +1711,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)7)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] CLEARED, sums[9] CLEARED;
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1725,7 +1728,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -1735,7 +1738,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1743,7 +1746,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1807,10 +1810,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)4)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] CLEARED, sums[6] CLEARED;
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1820,7 +1826,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -1829,14 +1835,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1902,10 +1908,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)5)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -1915,7 +1924,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -1925,7 +1934,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1933,7 +1942,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1963,9 +1972,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
+#define PASSED_IN_H ((size_t)2)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -1981,7 +1992,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2081,11 +2092,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)5)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
@@ -2098,7 +2112,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -2108,7 +2122,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2116,7 +2130,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2162,9 +2176,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)2)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2180,7 +2196,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2226,10 +2242,12 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)2)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2245,7 +2263,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2293,10 +2311,12 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)2)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2312,7 +2332,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2372,10 +2392,12 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[5*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)2)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 9);
@@ -2433,10 +2455,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)3)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] CLEARED, sums[1] CLEARED;
-    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr); i += BESIDE(LEGS_OF_rrr)) {
@@ -2449,7 +2474,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -2520,11 +2545,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)2)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] CLEARED, sums[1] CLEARED;
-    real terms_rrr[LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rrr))
@@ -2534,7 +2562,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
     condition_after(m, 1, 0, sums, lengths, t);

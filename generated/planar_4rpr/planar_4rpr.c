@@ -1777,11 +1777,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)7)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] CLEARED, sums[9] CLEARED;
-    real terms_rpr[9*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rpr[SUMS_OF_dynamics*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1791,7 +1794,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -1801,7 +1804,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rpr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1809,7 +1812,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1872,10 +1875,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)4)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] CLEARED, sums[6] CLEARED;
-    real terms_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rpr[SUMS_OF_M*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1885,7 +1891,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -1894,14 +1900,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rpr[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1966,10 +1972,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)5)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rpr[SUMS_OF_Z*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rpr))
@@ -1979,7 +1988,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -1989,7 +1998,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rpr[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -1997,7 +2006,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2026,9 +2035,11 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + v.rpr_H_a_2_z);
 }
 
+#define PASSED_IN_H ((size_t)2)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2044,7 +2055,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rpr[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2142,11 +2153,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)5)
+#define SUMS_OF_required ((size_t)3)
+
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rpr[SUMS_OF_required*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
@@ -2159,7 +2173,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         required_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -2196,9 +2210,11 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)2)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2214,7 +2230,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rpr[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2258,10 +2274,12 @@ INLINE void joint_rates_place_rpr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)2)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2277,7 +2295,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rpr[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2325,10 +2343,12 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)2)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rpr[4*LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -2344,7 +2364,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rpr[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2402,10 +2422,12 @@ INLINE void legs_place_rpr(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[4*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)2)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rpr[5*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(leg_force, 3*NL);
     clear(actuator, 12);
@@ -2467,10 +2489,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)3)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] CLEARED, sums[1] CLEARED;
-    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rpr[SUMS_OF_potential*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[LEGS(LEGS_OF_rpr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rpr); i += BESIDE(LEGS_OF_rpr)) {
@@ -2483,7 +2508,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         any_place_rpr_2(0, i, LEGS(LEGS_OF_rpr), o_rpr, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -2549,11 +2574,14 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)2)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] CLEARED, sums[1] CLEARED;
-    real terms_rpr[LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rpr[SUMS_OF_condition*LEGS(LEGS_OF_rpr)] CLEARED, o_rpr[6*LEGS(LEGS_OF_rpr)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -2564,7 +2592,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rpr; ++i) {
         condition_place_rpr(1, i, 0, i, LEGS(LEGS_OF_rpr), o_rpr, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
     condition_after(1, 0, sums, lengths, t);

@@ -1530,15 +1530,15 @@ typedef struct {
     real prrr_q_x, prrr_q_y, prrr_rho2_2, prrr_disc_2, prrr_c_2, prrr_s_2, prrr_c_3, prrr_s_3_t,
         prrr_d_3_in_axes3_x, prrr_r_2_in_axes3_y, prrr_r_2_in_axes3_x, prrr_w_2_t,
         prrr_e_1_in_axes3_y, axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y,
-        prrr_w_2_t_2, prrr_w_2_x, prrr_w_2_y, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_g_in_axes3_x,
-        prrr_g_in_axes3_y, prrr_P_c_2_in_axes0_x, prrr_H_a_2_z, prrr_a_p_x, prrr_a_p_y, prrr_qd_2,
-        prrr_qd_3, prrr_u_1_x, prrr_u_1_t, prrr_bias_in_axes3_y, prrr_bias_in_axes3_x, prrr_f_2_t,
-        prrr_f_2_t_2, prrr_c_t, prrr_c_t_2, prrr_S_ddot_in_axes3_x, prrr_S_ddot_in_axes3_y,
-        prrr_qdd_2_t, prrr_qdd_3, prrr_U_x, prrr_U_y, prrr_P_1_o, prrr_Z_a_t, prrr_Q_xx, prrr_Q_yy,
-        prrr_Q_xy, prrr_dy_1_P_1, prrr_d_P_1_x, prrr_d_P_1_y, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
-        prrr_M_ya_1_z, prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x,
-        prrr_acc_3_in_axes3_y, prrr_G_in_axes3_y, prrr_G_in_axes3_x, prrr_c_in_axes3_x,
-        prrr_c_in_axes3_y;
+        prrr_w_2_t_2, prrr_w_2_t_3, prrr_w_2_y, prrr_g_in_axes2_x, prrr_g_in_axes2_y,
+        prrr_g_in_axes3_x, prrr_g_in_axes3_y, prrr_P_c_2_in_axes0_x, prrr_H_a_2_z, prrr_a_p_x,
+        prrr_a_p_y, prrr_qd_2_t, prrr_qd_3, prrr_u_1_x, prrr_u_1_t, prrr_bias_t, prrr_bias_in_axes3_x,
+        prrr_f_2_t, prrr_f_2_t_2, prrr_c_t, prrr_c_t_2, prrr_S_ddot_in_axes3_x,
+        prrr_S_ddot_in_axes3_y, prrr_qdd_2_t, prrr_qdd_3, prrr_U_x, prrr_U_y, prrr_P_1_o, prrr_Z_a_t,
+        prrr_Q_xx, prrr_Q_yy, prrr_Q_xy, prrr_dy_1_P_1, prrr_d_P_1_x, prrr_d_P_1_y, prrr_M_ta_t,
+        prrr_M_ta_t_2, prrr_M_aa_t, prrr_M_ya_1_z, prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y,
+        prrr_acc_3_in_axes3_x, prrr_acc_3_in_axes3_y, prrr_G_in_axes3_y, prrr_G_in_axes3_x,
+        prrr_c_in_axes3_x, prrr_c_in_axes3_y;
 } values_prrr;
 
 INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1602,7 +1602,7 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
         m->prrr_base_frame_yy[i]*v->prrr_e_1_in_axes3_y;
     v->inv_prrr_r_2_in_axes3_y = 1/v->prrr_r_2_in_axes3_y;
     v->prrr_w_2_t_2 = -v->inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t;
-    v->prrr_w_2_x = -v->axis_x_prrr_axes3_x*v->inv_prrr_r_2_in_axes3_y;
+    v->prrr_w_2_t_3 = v->axis_x_prrr_axes3_x*v->inv_prrr_r_2_in_axes3_y;
     v->prrr_w_2_y = v->axis_y_prrr_axes3_x*v->inv_prrr_r_2_in_axes3_y;
     /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->prrr_g_in_axes2_x = m->prrr_acc_1_in_axes0_y[i]*v->prrr_c_2 +
@@ -1618,7 +1618,7 @@ INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->prrr_P_c_2_in_axes0_x = v->prrr_c_2*m->prrr_h_2_in_spec2_x[i] -
         m->prrr_h_2_in_spec2_y[i]*v->prrr_s_2;
     /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-    v->prrr_H_a_2_z = v->prrr_q_x*v->prrr_w_2_y - v->prrr_q_y*v->prrr_w_2_x;
+    v->prrr_H_a_2_z = v->prrr_q_x*v->prrr_w_2_y + v->prrr_q_y*v->prrr_w_2_t_3;
 }
 
 INLINE void stage_prrr_A_X(size_t w, size_t j, const real *A, values_prrr *v)
@@ -1649,22 +1649,22 @@ INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
     const real prrr_S_dot_rest_in_axes3_x = v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
         v->axis_y_prrr_axes3_x*prrr_S_dot_rest_y;
     /* (prrr-qd_2) rate of joint 2 */
-    v->prrr_qd_2 = -v->inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x;
+    v->prrr_qd_2_t = v->inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x;
     /* (prrr-qd_3) rate of joint 3 */
     v->prrr_qd_3 = m->prrr_w_3_in_axes3_y[i]*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - v->prrr_qd_2*v->prrr_r_2_in_axes3_x);
+        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x + v->prrr_qd_2_t*v->prrr_r_2_in_axes3_x);
     /* (prrr-W_2) centripetal tensor of link 2 */
-    const real prrr_W_2_in_axes2_xx = -v->prrr_qd_2*v->prrr_qd_2;
+    const real prrr_W_2_in_axes2_xx = -v->prrr_qd_2_t*v->prrr_qd_2_t;
     /* (prrr-omega_3) angular velocity of link 3 */
-    const real prrr_omega_3_in_axes3_z = v->prrr_qd_2 + v->prrr_qd_3;
+    const real prrr_omega_3_in_axes3_z = v->prrr_qd_3 - v->prrr_qd_2_t;
     /* (prrr-W_3) centripetal tensor of link 3 */
     const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
     /* (prrr-u_1) centripetal acceleration of the connection point */
     v->prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
     v->prrr_u_1_t = omega_z*prrr_S_dot_t;
     /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*v->prrr_qd_2;
-    v->prrr_bias_in_axes3_x = -v->prrr_d_3_in_axes3_x*v->prrr_qd_2*v->prrr_qd_2 -
+    v->prrr_bias_t = prrr_S_dot_rest_in_axes3_x*v->prrr_qd_2_t;
+    v->prrr_bias_in_axes3_x = -v->prrr_d_3_in_axes3_x*v->prrr_qd_2_t*v->prrr_qd_2_t -
         prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*m->prrr_platform_joint_offset_x[i];
     /* (prrr-f_2) inertia force of link 2 less its weight */
     v->prrr_f_2_t = prrr_W_2_in_axes2_xx*m->prrr_h_2_in_spec2_x[i];
@@ -1690,7 +1690,7 @@ INLINE void stage_prrr_A_V_X(const prepared *m, size_t w, size_t i, size_t j, co
     const real prrr_rel_in_axes3_x = v->prrr_w_2_t*prrr_ydd_1 + v->prrr_S_ddot_in_axes3_x -
         v->prrr_bias_in_axes3_x;
     const real prrr_rel_in_axes3_y = v->prrr_S_ddot_in_axes3_y -
-        v->prrr_e_1_in_axes3_y*prrr_ydd_1 - v->prrr_bias_in_axes3_y;
+        v->prrr_e_1_in_axes3_y*prrr_ydd_1 + v->prrr_bias_t;
     /* (prrr-qdd_2) acceleration of joint 2 */
     v->prrr_qdd_2_t = v->inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
     /* (prrr-qdd_3) acceleration of joint 3 */
@@ -1708,7 +1708,7 @@ INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t i, values_prrr *v)
     /* (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v->prrr_bias_in_axes3_x;
-    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - v->prrr_bias_in_axes3_y;
+    const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y + v->prrr_bias_t;
     /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
     const real prrr_B_2_o_in_axes2_xy = v->inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
     /* (prrr-alpha_3_o) remainder of: angular acceleration of link 3 */
@@ -1885,7 +1885,7 @@ INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
         axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
-        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x,
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
         rrr_a_p_y, rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_t, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
@@ -1947,7 +1947,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
     v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = -v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
@@ -1960,7 +1960,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
         v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y + v->rrr_q_y*v->rrr_w_1_t;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -2214,7 +2214,7 @@ INLINE void any_entries_prrr_3(size_t k, size_t count, const values_prrr *v, rea
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     o[0*count + k] = 1;
     /* (prrr-w_2) reciprocal vector 1 */
-    o[1*count + k] = v->prrr_w_2_x;
+    o[1*count + k] = -v->prrr_w_2_t_3;
     o[2*count + k] = v->prrr_w_2_y;
     /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
     o[3*count + k] = v->prrr_H_a_2_z;
@@ -2247,7 +2247,7 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_w_1_x;
+    o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v->rrr_H_a_1_z;
@@ -2302,7 +2302,7 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, 
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
     o[15*count + k] = ((v.prrr_P_1_o + v.prrr_d_P_1_x) + (v.prrr_d_P_1_y + v.prrr_M_ya_1_z)) +
-        ((v.prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (v.prrr_H_a_2_z +
+        ((v.prrr_dy_1_P_1 + v.prrr_w_2_t_3) + (v.prrr_w_2_y + (v.prrr_H_a_2_z +
         v.prrr_w_2_t_2)));
 }
 
@@ -2341,7 +2341,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2395,12 +2395,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)7)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] CLEARED, sums[9] CLEARED;
-    real terms_prrr[9*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[16*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_prrr[SUMS_OF_dynamics*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[16*LEGS(LEGS_OF_prrr)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
     any_before(m, 1, 0, X, &v, s);
@@ -2415,13 +2419,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         dynamics_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, M, Z, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2433,7 +2437,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_prrr[16*LANES];
     ALIGNED real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
@@ -2443,7 +2447,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2547,11 +2551,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)4)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] CLEARED, sums[6] CLEARED;
-    real terms_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[10*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_prrr[SUMS_OF_M*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[10*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_prrr))
@@ -2565,13 +2572,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         M_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, M, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2582,7 +2589,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_prrr[10*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2590,7 +2597,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2691,11 +2698,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)5)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[4*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_prrr[SUMS_OF_Z*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[4*LEGS(LEGS_OF_prrr)] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_prrr))
@@ -2709,13 +2719,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         Z_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, Z, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2727,7 +2737,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_prrr[4*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2736,7 +2746,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2774,7 +2784,7 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size_t 
     o[6*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
-    o[7*count + k] = (v.prrr_w_2_x + v.prrr_w_2_y) + (v.prrr_H_a_2_z + v.prrr_w_2_t_2);
+    o[7*count + k] = (v.prrr_w_2_t_3 + v.prrr_w_2_y) + (v.prrr_H_a_2_z + v.prrr_w_2_t_2);
 }
 
 INLINE void H_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o, real *H,
@@ -2799,12 +2809,14 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
+
+#define PASSED_IN_H ((size_t)2)
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_prrr[8*LEGS(LEGS_OF_prrr)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
@@ -2829,7 +2841,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_prrr[8*LANES];
     ALIGNED real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
@@ -3001,12 +3013,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)5)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[8*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_prrr[SUMS_OF_required*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[8*LEGS(LEGS_OF_prrr)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
     any_before_2(m, 1, 0, X, &v, s);
@@ -3027,13 +3043,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         required_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, required, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3045,7 +3061,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_prrr[8*LANES];
     ALIGNED real o_rrr[5*LANES];
     clear(H, NV*NU*LANES);
@@ -3055,7 +3071,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3144,9 +3160,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)2)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3170,7 +3188,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_prrr[6*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3211,14 +3229,14 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t i, size_t 
     const real prrr_yd_1 = V[3*w + j];
     o[0*count + k] = prrr_yd_1;
     /* (prrr-qd_2) rate of joint 2 */
-    o[1*count + k] = v.prrr_qd_2;
+    o[1*count + k] = -v.prrr_qd_2_t;
     /* (prrr-qd_3) rate of joint 3 */
     o[2*count + k] = v.prrr_qd_3;
     o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
-    o[5*count + k] = prrr_yd_1 + (v.prrr_qd_2 + v.prrr_qd_3);
+    o[5*count + k] = prrr_yd_1 + (v.prrr_qd_2_t + v.prrr_qd_3);
 }
 
 INLINE void joint_rates_place_prrr(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -3258,10 +3276,12 @@ INLINE void joint_rates_place_rrr(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)2)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3285,7 +3305,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_prrr[6*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3377,10 +3397,12 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)2)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3404,7 +3426,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_prrr[6*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3457,7 +3479,7 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t i, size_t j, size
     o[0*count + k] = prrr_c_true_x;
     o[1*count + k] = prrr_c_true_y;
     /* (prrr-w_2) reciprocal vector 1 */
-    o[2*count + k] = v.prrr_w_2_x;
+    o[2*count + k] = -v.prrr_w_2_t_3;
     o[3*count + k] = v.prrr_w_2_y;
     o[4*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
@@ -3498,7 +3520,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_w_1_x;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3516,10 +3538,12 @@ INLINE void legs_place_rrr(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[5*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)2)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_prrr[6*LEGS(LEGS_OF_prrr)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
@@ -3578,7 +3602,7 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
         v.prrr_c_2*m->prrr_h_2_in_spec2_y[i] + m->prrr_h_2_in_spec2_x[i]*v.prrr_s_2 +
         v.prrr_c_2*prrr_potential_t_5 + prrr_potential_t_4*v.prrr_s_2);
     /* (potential) */
-    gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, prrr_potential_t_6);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]);
@@ -3598,7 +3622,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
-    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
@@ -3608,17 +3632,20 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[2*w + k];
-    const real potential_t_2 = sums[1*w + k];
-    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)3)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] CLEARED, sums[2] CLEARED;
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_prrr[SUMS_OF_potential*LEGS(LEGS_OF_prrr)] CLEARED, o_prrr[2*LEGS(LEGS_OF_prrr)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_prrr); i += BESIDE(LEGS_OF_prrr)) {
@@ -3638,13 +3665,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_prrr), o_prrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3691,7 +3718,7 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t i, size_t j,
     o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) >
         TOLERANCE*TOLERANCE*m->prrr_rho2_2_t[i]) + UNLESS(magnitude(v.prrr_r_2_in_axes3_y) >
         TOLERANCE*m->prrr_size[i]);
-    o[9*count + k] = (v.prrr_w_2_x + (v.prrr_w_2_y + v.prrr_H_a_2_z)) + (v.prrr_w_2_t_2 +
+    o[9*count + k] = (v.prrr_w_2_t_3 + (v.prrr_w_2_y + v.prrr_H_a_2_z)) + (v.prrr_w_2_t_2 +
         (prrr_least_pivots + v.prrr_disc_2));
 }
 
@@ -3734,7 +3761,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+    o[7*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
         v.rrr_disc_1));
 }
 
@@ -3763,12 +3790,16 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)2)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] CLEARED, sums[2] CLEARED;
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_prrr[SUMS_OF_condition*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)]
+        CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(H, NV*NU);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3783,13 +3814,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_prrr; ++i) {
         condition_place_prrr(1, 0, i, LEGS(LEGS_OF_prrr), o_prrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, i, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }

@@ -19,6 +19,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -1057,6 +1058,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1075,10 +1077,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1106,10 +1108,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1160,14 +1162,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1180,35 +1181,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1218,7 +1224,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1700,7 +1707,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2126,7 +2133,7 @@ def _run_dynamics(m, X, V):
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_t_3 = axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-w_3) reciprocal vector 2
         prrr_w_3_in_axes3_x = inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y
@@ -2137,16 +2144,16 @@ def _run_dynamics(m, X, V):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        prrr_W_2_in_axes2_xx = -prrr_qd_2_t*prrr_qd_2_t
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        prrr_omega_3_in_axes3_z = prrr_qd_3 - prrr_qd_2_t
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -2155,14 +2162,14 @@ def _run_dynamics(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
+        prrr_bias_t = prrr_S_dot_rest_in_axes3_x*prrr_qd_2_t
         prrr_bias_in_axes3_x = (
-        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+        -prrr_d_3_in_axes3_x*prrr_qd_2_t*prrr_qd_2_t -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
-        prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_bias_in_axes3_y
+        prrr_rel_o_in_axes3_y = prrr_bias_t + prrr_u_1_in_axes3_y
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
@@ -2311,7 +2318,7 @@ def _run_dynamics(m, X, V):
         # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
         prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y + prrr_q_y*prrr_w_2_t_3
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0) &
             (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size)
@@ -2345,7 +2352,7 @@ def _run_dynamics(m, X, V):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t_3
         out_H[_H_prrr[2][leg]] = prrr_w_2_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
@@ -2413,7 +2420,7 @@ def _run_dynamics(m, X, V):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
         rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
@@ -2518,7 +2525,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -2538,7 +2545,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         Z_a_rrr_z += rrr_Z_a_t
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -3004,16 +3011,16 @@ def _run_Z(m, X, V):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        prrr_W_2_in_axes2_xx = -prrr_qd_2_t*prrr_qd_2_t
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        prrr_omega_3_in_axes3_z = prrr_qd_3 - prrr_qd_2_t
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -3022,14 +3029,14 @@ def _run_Z(m, X, V):
         prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
         prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
+        prrr_bias_t = prrr_S_dot_rest_in_axes3_x*prrr_qd_2_t
         prrr_bias_in_axes3_x = (
-        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+        -prrr_d_3_in_axes3_x*prrr_qd_2_t*prrr_qd_2_t -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
-        prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y - prrr_bias_in_axes3_y
+        prrr_rel_o_in_axes3_y = prrr_bias_t + prrr_u_1_in_axes3_y
         # (prrr-B_2_o) remainder of the acceleration tensor of link 2
         prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder of: angular acceleration of link 3
@@ -3339,10 +3346,10 @@ def _run_H(m, X):
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_t_3 = axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y + prrr_q_y*prrr_w_2_t_3
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0) &
             (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size)
@@ -3350,7 +3357,7 @@ def _run_H(m, X):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t_3
         out_H[_H_prrr[2][leg]] = prrr_w_2_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
@@ -3403,16 +3410,16 @@ def _run_H(m, X):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -3540,7 +3547,7 @@ def _run_required(m, X, V, A):
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_t_3 = axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
@@ -3549,16 +3556,16 @@ def _run_required(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        prrr_W_2_in_axes2_xx = -prrr_qd_2_t*prrr_qd_2_t
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        prrr_omega_3_in_axes3_z = prrr_qd_3 - prrr_qd_2_t
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -3577,9 +3584,9 @@ def _run_required(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
+        prrr_bias_t = prrr_S_dot_rest_in_axes3_x*prrr_qd_2_t
         prrr_bias_in_axes3_x = (
-        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+        -prrr_d_3_in_axes3_x*prrr_qd_2_t*prrr_qd_2_t -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
@@ -3587,7 +3594,7 @@ def _run_required(m, X, V, A):
         prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
+        prrr_S_ddot_in_axes3_y + prrr_bias_t - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
         # (prrr-qdd_2) acceleration of joint 2
         prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
@@ -3655,7 +3662,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         prrr_R_a_t = prrr_c_x*prrr_q_y - prrr_c_y*prrr_q_x
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y + prrr_q_y*prrr_w_2_t_3
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0) &
             (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size)
@@ -3670,7 +3677,7 @@ def _run_required(m, X, V, A):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t_3
         out_H[_H_prrr[2][leg]] = prrr_w_2_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
@@ -3734,7 +3741,7 @@ def _run_required(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
@@ -3807,7 +3814,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -3818,7 +3825,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         R_a_rrr_z += rrr_R_a_t
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -4062,11 +4069,11 @@ def _run_joint_rates(m, X, V):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0) &
@@ -4075,7 +4082,7 @@ def _run_joint_rates(m, X, V):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qd[_qd_prrr[0][leg]] = prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        out_qd[_qd_prrr[1][leg]] = prrr_qd_2
+        out_qd[_qd_prrr[1][leg]] = -prrr_qd_2_t
         # (prrr-qd_3) rate of joint 3
         out_qd[_qd_prrr[2][leg]] = prrr_qd_3
     for leg, k in legs[1]:
@@ -4258,14 +4265,14 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        prrr_omega_3_in_axes3_z = prrr_qd_3 - prrr_qd_2_t
         # (prrr-u_1) centripetal acceleration of the connection point
         prrr_u_1_x = -omega_z*prrr_S_dot_t_2
         prrr_u_1_t = omega_z*prrr_S_dot_t
@@ -4282,9 +4289,9 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
+        prrr_bias_t = prrr_S_dot_rest_in_axes3_x*prrr_qd_2_t
         prrr_bias_in_axes3_x = (
-        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+        -prrr_d_3_in_axes3_x*prrr_qd_2_t*prrr_qd_2_t -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
@@ -4292,7 +4299,7 @@ def _run_joint_accelerations(m, X, V, A):
         prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
+        prrr_S_ddot_in_axes3_y + prrr_bias_t - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
         # (prrr-qdd_2) acceleration of joint 2
         prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
@@ -4511,7 +4518,7 @@ def _run_legs(m, X, V, A):
         prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
-        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_t_3 = axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
@@ -4520,14 +4527,14 @@ def _run_legs(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_dot_rest_x - axis_y_prrr_axes3_x*prrr_S_dot_rest_y
         )
         # (prrr-qd_2) rate of joint 2
-        prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
+        prrr_qd_2_t = inv_prrr_r_2_in_axes3_y*prrr_S_dot_rest_in_axes3_x
         # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
         prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x + prrr_qd_2_t*prrr_r_2_in_axes3_x)
         )
         # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_in_axes3_z = prrr_qd_2 + prrr_qd_3
+        prrr_omega_3_in_axes3_z = prrr_qd_3 - prrr_qd_2_t
         # (prrr-W_3) centripetal tensor of link 3
         prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
@@ -4546,9 +4553,9 @@ def _run_legs(m, X, V, A):
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
         )
         # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_in_axes3_y = prrr_S_dot_rest_in_axes3_x*prrr_qd_2
+        prrr_bias_t = prrr_S_dot_rest_in_axes3_x*prrr_qd_2_t
         prrr_bias_in_axes3_x = (
-        -prrr_d_3_in_axes3_x*prrr_qd_2*prrr_qd_2 -
+        -prrr_d_3_in_axes3_x*prrr_qd_2_t*prrr_qd_2_t -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
@@ -4556,7 +4563,7 @@ def _run_legs(m, X, V, A):
         prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
-        prrr_S_ddot_in_axes3_y - prrr_bias_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1
+        prrr_S_ddot_in_axes3_y + prrr_bias_t - prrr_e_1_in_axes3_y*prrr_ydd_1
         )
         # (prrr-qdd_2) acceleration of joint 2
         prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
@@ -4617,7 +4624,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_prrr[0][leg]] = prrr_c_true_x
         out_leg_force[_leg_force_prrr[1][leg]] = prrr_c_true_y
         # (prrr-w_2) reciprocal vector 1
-        out_actuator[_actuator_prrr[0][leg]] = prrr_w_2_x
+        out_actuator[_actuator_prrr[0][leg]] = -prrr_w_2_t_3
         out_actuator[_actuator_prrr[1][leg]] = prrr_w_2_y
     for leg, k in legs[1]:
         (
@@ -4676,7 +4683,7 @@ def _run_legs(m, X, V, A):
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
         rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
@@ -4761,7 +4768,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
         out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
         # (rrr-w_1) reciprocal vector 1
-        out_actuator[_actuator_rrr[0][leg]] = rrr_w_1_x
+        out_actuator[_actuator_rrr[0][leg]] = -rrr_w_1_t
         out_actuator[_actuator_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_actuator,)
 
@@ -4788,7 +4795,7 @@ def _run_potential(m, X):
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
-    potential_prrr, = [0.0] * 1
+    potential_t_3, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y,
@@ -4858,7 +4865,7 @@ def _run_potential(m, X):
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0)
         )
         # (potential) potential energy
-        potential_prrr += -prrr_potential_t_6
+        potential_t_3 += prrr_potential_t_6
     potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -4915,7 +4922,7 @@ def _run_potential(m, X):
         # (potential) potential energy
         potential_t_2 += rrr_potential_t_3
     # (potential) potential energy
-    potential = potential_prrr - potential_t - potential_t_2
+    potential = -potential_t - potential_t_2 - potential_t_3
     # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -5009,7 +5016,7 @@ def _run_condition(m, X):
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
-        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_t_3 = axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_pivot_size = abs(prrr_rho2_2)
@@ -5018,7 +5025,7 @@ def _run_condition(m, X):
         least(sqrt(inv_prrr_rho2_2_t*prrr_pivot_size), inv_prrr_size*prrr_pivot_size_2)
         )
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y + prrr_q_y*prrr_w_2_t_3
         # (spread) rms distance of the platform points from their centroid
         prrr_spread_t = b_c_in_platform_x - prrr_platform_point_x
         prrr_spread_t_2 = b_c_in_platform_y - prrr_platform_point_y
@@ -5033,7 +5040,7 @@ def _run_condition(m, X):
         # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[1][leg]] = -prrr_w_2_t_3
         out_H[_H_prrr[2][leg]] = prrr_w_2_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
@@ -5091,7 +5098,7 @@ def _run_condition(m, X):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
         inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
@@ -5100,7 +5107,7 @@ def _run_condition(m, X):
         least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         # (spread) rms distance of the platform points from their centroid
         rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
         rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
@@ -5113,7 +5120,7 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rrr += rrr_spread_t_3
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z

@@ -752,7 +752,8 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_leg1_w_2_in_axes2_y = 1/rrr_leg1_platform_joint_offset_x;
         /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_leg1_d_phi_2_t = rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_d_phi_2_in_axes2_xy =
+            -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last
            link about the connection point */
         const real rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz +
@@ -809,7 +810,7 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         KEEP_OF_LEG(rrr_leg1_d_Gamma_2_in_axes2_y);
         KEEP_OF_LEG(rrr_leg1_d_Gamma_2_t);
         KEEP_OF_LEG(rrr_leg1_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_leg1_d_phi_2_t);
+        KEEP_OF_LEG(rrr_leg1_d_phi_2_in_axes2_xy);
         KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_x);
         KEEP_OF_LEG(rrr_leg1_h_1_in_spec1_y);
         KEEP_OF_LEG(rrr_leg1_h_2_in_spec2_x);
@@ -894,7 +895,7 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
         /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
            about its reference point */
-        const real rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
+        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
         const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
@@ -945,7 +946,7 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         KEEP_OF_LEG(rrr_d_Gamma_2_in_axes2_y);
         KEEP_OF_LEG(rrr_d_Gamma_2_t);
         KEEP_OF_LEG(rrr_d_c_in_axes2_yy);
-        KEEP_OF_LEG(rrr_d_phi_2_t);
+        KEEP_OF_LEG(rrr_d_phi_2_in_axes2_xy);
         KEEP_OF_LEG(rrr_h_1_in_spec1_x);
         KEEP_OF_LEG(rrr_h_1_in_spec1_y);
         KEEP_OF_LEG(rrr_h_2_in_spec2_x);
@@ -1478,9 +1479,9 @@ INLINE void stage_V_X(values *v)
 typedef struct {
     real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2_t,
         axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_d_2_in_axes2_x, rrr_r_1_in_axes2_y,
-        rrr_r_1_in_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_g_in_axes2_x,
+        rrr_r_1_in_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_y, rrr_g_in_axes2_x,
         rrr_g_in_axes2_y, rrr_g_in_axes1_x, rrr_g_in_axes1_y, rrr_mu_1_t_3, rrr_H_a_1_z, rrr_a_p_x,
-        rrr_a_p_y, rrr_qd_1, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_in_axes2_y, rrr_bias_in_axes2_x,
+        rrr_a_p_y, rrr_qd_1_t, rrr_qd_2, rrr_u_1_x, rrr_u_1_t, rrr_bias_t, rrr_bias_in_axes2_x,
         rrr_c_t, rrr_c_t_2, rrr_S_ddot_in_axes2_x, rrr_S_ddot_in_axes2_y, rrr_qdd_1_t, rrr_qdd_2,
         rrr_U_x, rrr_U_y, rrr_Z_a_t, rrr_Q_xx, rrr_Q_yy, rrr_Q_xy, rrr_M_ta_t, rrr_M_ta_t_2,
         rrr_M_aa_t, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
@@ -1539,9 +1540,9 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_r_1_in_axes2_y = m->rrr_joint2_offset_x[i]*v->rrr_s_2_t;
     v->rrr_r_1_in_axes2_x = m->rrr_platform_joint_offset_x[i] + v->rrr_d_2_in_axes2_x;
     /* (rrr-w_1) reciprocal vector 1 */
-    v->rrr_w_1_in_axes2_x = -1/v->rrr_r_1_in_axes2_y;
-    v->rrr_w_1_x = v->axis_x_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
-    v->rrr_w_1_y = -v->axis_y_rrr_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->inv_rrr_r_1_in_axes2_y = 1/v->rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = v->axis_x_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_y = v->axis_y_rrr_axes2_x*v->inv_rrr_r_1_in_axes2_y;
     /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
     v->rrr_g_in_axes2_x = v->axis_x_rrr_axes2_x*m->gravity_x -
         v->axis_y_rrr_axes2_x*m->gravity_y;
@@ -1553,7 +1554,7 @@ INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rrr_mu_1_t_3 = v->rrr_g_in_axes1_y*m->rrr_h_1_in_spec1_x[i] -
         v->rrr_g_in_axes1_x*m->rrr_h_1_in_spec1_y[i];
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y - v->rrr_q_y*v->rrr_w_1_x;
+    v->rrr_H_a_1_z = v->rrr_q_x*v->rrr_w_1_y + v->rrr_q_y*v->rrr_w_1_t;
 }
 
 INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
@@ -1580,20 +1581,20 @@ INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real rrr_S_dot_in_axes2_x = v->axis_x_rrr_axes2_x*rrr_S_dot_x -
         v->axis_y_rrr_axes2_x*rrr_S_dot_y;
     /* (rrr-qd_1) rate of joint 1 */
-    v->rrr_qd_1 = rrr_S_dot_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x;
     /* (rrr-qd_2) rate of joint 2 */
     v->rrr_qd_2 = m->rrr_w_2_in_axes2_y[i]*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
-        v->axis_y_rrr_axes2_x*rrr_S_dot_x - v->rrr_qd_1*v->rrr_r_1_in_axes2_x);
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x + v->rrr_qd_1_t*v->rrr_r_1_in_axes2_x);
     /* (rrr-omega_2) angular velocity of link 2 */
-    const real rrr_omega_2_in_axes2_z = v->rrr_qd_1 + v->rrr_qd_2;
+    const real rrr_omega_2_in_axes2_z = v->rrr_qd_2 - v->rrr_qd_1_t;
     /* (rrr-W_2) centripetal tensor of link 2 */
     const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
     /* (rrr-u_1) centripetal acceleration of the connection point */
     v->rrr_u_1_x = -omega_z*rrr_S_dot_t_4;
     v->rrr_u_1_t = omega_z*rrr_S_dot_t_3;
     /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*v->rrr_qd_1;
-    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1*v->rrr_qd_1 -
+    v->rrr_bias_t = rrr_S_dot_in_axes2_x*v->rrr_qd_1_t;
+    v->rrr_bias_in_axes2_x = -v->rrr_d_2_in_axes2_x*v->rrr_qd_1_t*v->rrr_qd_1_t -
         rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*m->rrr_platform_joint_offset_x[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1612,9 +1613,9 @@ INLINE void stage_rrr_A_V_X(const prepared *m, size_t i, values_rrr *v)
         v->axis_y_rrr_axes2_x*rrr_S_ddot_x;
     /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_rel_in_axes2_x = v->rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_in_axes2_y = v->rrr_S_ddot_in_axes2_y + v->rrr_bias_t;
     /* (rrr-qdd_1) acceleration of joint 1 */
-    v->rrr_qdd_1_t = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    v->rrr_qdd_1_t = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
     /* (rrr-qdd_2) acceleration of joint 2 */
     v->rrr_qdd_2 = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_in_axes2_y +
         v->rrr_qdd_1_t*v->rrr_r_1_in_axes2_x);
@@ -1630,9 +1631,9 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
        */
     const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v->rrr_bias_in_axes2_x;
-    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - v->rrr_bias_in_axes2_y;
+    const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y + v->rrr_bias_t;
     /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-    const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    const real rrr_B_1_o_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
     /* (rrr-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrr_alpha_2_o_in_axes2_z = m->rrr_w_2_in_axes2_y[i]*(rrr_rel_o_in_axes2_y +
         rrr_B_1_o_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
@@ -1657,8 +1658,8 @@ INLINE void stage_rrr_Z_dynamics(const prepared *m, size_t i, values_rrr *v)
     /* (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real rrr_c_o_in_axes2_x = v->rrr_c_t +
-        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v->rrr_r_1_in_axes2_x -
         rrr_N_1_o_in_axes1_z);
     const real rrr_c_o_in_axes2_y = v->rrr_c_t_2 -
         rrr_alpha_2_o_in_axes2_z*m->rrr_h_2_in_spec2_x[i] - rrr_G_o_in_axes2_y;
@@ -1675,25 +1676,24 @@ INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
 {
     /* (rrr-w_2) reciprocal vector 2 */
     const real rrr_w_2_in_axes2_x =
-        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real rrr_d_Gamma_2_t_2 = m->rrr_d_Gamma_2_t[i]*v->rrr_r_1_in_axes2_x;
-    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_J_2_in_spec2_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_J_2_in_spec2_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(m->rrr_Jc_1_in_axes1_zz[i] -
-        rrr_d_Gamma_2_t_2) - m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_1_in_axes2_x = -m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(m->rrr_Jc_1_in_axes1_zz[i] - rrr_d_Gamma_2_t_2);
     /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real rrr_d_c_in_axes2_xy = m->rrr_d_phi_2_t[i] -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*v->rrr_w_1_in_axes2_x -
-        m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*m->rrr_d_Gamma_2_in_axes2_y[i]
+        - m->rrr_d_phi_2_in_axes2_xy[i] - m->rrr_d_Gamma_2_in_axes2_y[i]*rrr_w_2_in_axes2_x;
     /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_Q_t = m->rrr_h_2_in_spec2_y[i]*(v->rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x)
-        - m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_1_in_axes2_x*v->rrr_w_1_in_axes2_x -
-        rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+    const real rrr_Q_t = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x -
+        m->rrr_d_c_in_axes2_yy[i] - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x +
+        m->rrr_h_2_in_spec2_y[i]*(rrr_w_2_in_axes2_x - v->inv_rrr_r_1_in_axes2_y);
     const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
     const real rrr_Q_t_3 = v->axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy +
         v->axis_x_rrr_axes2_x*rrr_Q_t_2;
@@ -1731,8 +1731,9 @@ INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
     const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*m->rrr_w_2_in_axes2_y[i];
     /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] +
-        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    v->rrr_c_in_axes2_x = v->rrr_c_t + rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_y[i] -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_in_axes1_z);
     v->rrr_c_in_axes2_y = v->rrr_c_t_2 - rrr_alpha_2_in_axes2_z*m->rrr_h_2_in_spec2_x[i] -
         rrr_G_in_axes2_y;
 }
@@ -1741,16 +1742,15 @@ typedef struct {
     real rrr_leg1_q_x, rrr_leg1_q_y, rrr_leg1_rho2_1, rrr_leg1_disc_1, rrr_leg1_c_1, rrr_leg1_s_1,
         rrr_leg1_c_2, rrr_leg1_s_2_t, axis_y_rrr_leg1_axes2_x, axis_x_rrr_leg1_axes2_x,
         rrr_leg1_d_2_in_axes2_x, rrr_leg1_r_1_in_axes2_y, rrr_leg1_r_1_in_axes2_x,
-        rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x, rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x,
+        inv_rrr_leg1_r_1_in_axes2_y, rrr_leg1_w_1_t, rrr_leg1_w_1_y, rrr_leg1_w_2_in_axes2_x,
         rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_g_in_axes2_x, rrr_leg1_g_in_axes2_y,
         rrr_leg1_g_in_axes1_x, rrr_leg1_g_in_axes1_y, rrr_leg1_mu_1_t_3, rrr_leg1_H_a_1_z,
-        rrr_leg1_H_a_2_z, rrr_leg1_a_p_x, rrr_leg1_a_p_y, rrr_leg1_qd_1, rrr_leg1_qd_2,
-        rrr_leg1_u_1_x, rrr_leg1_u_1_t, rrr_leg1_bias_in_axes2_y, rrr_leg1_bias_in_axes2_x,
-        rrr_leg1_c_t, rrr_leg1_c_t_2, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y,
-        rrr_leg1_qdd_1_t, rrr_leg1_qdd_2, rrr_leg1_U_x, rrr_leg1_U_y, rrr_leg1_Z_a_t, rrr_leg1_Q_xx,
-        rrr_leg1_Q_yy, rrr_leg1_Q_xy, rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t,
-        rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
-        rrr_leg1_c_in_axes2_y;
+        rrr_leg1_H_a_2_z, rrr_leg1_a_p_x, rrr_leg1_a_p_y, rrr_leg1_qd_1_t, rrr_leg1_qd_2,
+        rrr_leg1_u_1_x, rrr_leg1_u_1_t, rrr_leg1_bias_t, rrr_leg1_bias_in_axes2_x, rrr_leg1_c_t,
+        rrr_leg1_c_t_2, rrr_leg1_S_ddot_in_axes2_x, rrr_leg1_S_ddot_in_axes2_y, rrr_leg1_qdd_1_t,
+        rrr_leg1_qdd_2, rrr_leg1_U_x, rrr_leg1_U_y, rrr_leg1_Z_a_t, rrr_leg1_Q_xx, rrr_leg1_Q_yy,
+        rrr_leg1_Q_xy, rrr_leg1_M_ta_t, rrr_leg1_M_ta_t_2, rrr_leg1_M_aa_t, rrr_leg1_acc_2_in_axes2_x,
+        rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x, rrr_leg1_c_in_axes2_y;
 } values_rrr_leg1;
 
 INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -1818,12 +1818,12 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->rrr_leg1_r_1_in_axes2_x = m->rrr_leg1_platform_joint_offset_x[i] +
         v->rrr_leg1_d_2_in_axes2_x;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    v->rrr_leg1_w_1_in_axes2_x = -1/v->rrr_leg1_r_1_in_axes2_y;
-    v->rrr_leg1_w_1_x = v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
-    v->rrr_leg1_w_1_y = -v->axis_y_rrr_leg1_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->inv_rrr_leg1_r_1_in_axes2_y = 1/v->rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_t = v->axis_x_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
+    v->rrr_leg1_w_1_y = v->axis_y_rrr_leg1_axes2_x*v->inv_rrr_leg1_r_1_in_axes2_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     v->rrr_leg1_w_2_in_axes2_x =
-        -v->rrr_leg1_r_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
+        v->inv_rrr_leg1_r_1_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i];
     v->rrr_leg1_w_2_x = v->axis_y_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] +
         v->axis_x_rrr_leg1_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
     v->rrr_leg1_w_2_y = v->axis_x_rrr_leg1_axes2_x*m->rrr_leg1_w_2_in_axes2_y[i] -
@@ -1842,8 +1842,8 @@ INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, co
     v->rrr_leg1_mu_1_t_3 = v->rrr_leg1_g_in_axes1_y*m->rrr_leg1_h_1_in_spec1_x[i] -
         v->rrr_leg1_g_in_axes1_x*m->rrr_leg1_h_1_in_spec1_y[i];
     /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-    v->rrr_leg1_H_a_1_z = v->rrr_leg1_q_x*v->rrr_leg1_w_1_y -
-        v->rrr_leg1_q_y*v->rrr_leg1_w_1_x;
+    v->rrr_leg1_H_a_1_z = v->rrr_leg1_q_x*v->rrr_leg1_w_1_y +
+        v->rrr_leg1_q_y*v->rrr_leg1_w_1_t;
     /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
     v->rrr_leg1_H_a_2_z = v->rrr_leg1_q_x*v->rrr_leg1_w_2_y -
         v->rrr_leg1_q_y*v->rrr_leg1_w_2_x;
@@ -1873,23 +1873,23 @@ INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, 
     const real rrr_leg1_S_dot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
         v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y;
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    v->rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_qd_1_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     v->rrr_leg1_qd_2 =
         m->rrr_leg1_w_2_in_axes2_y[i]*(v->axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
-        v->rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
+        v->axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x +
+        v->rrr_leg1_qd_1_t*v->rrr_leg1_r_1_in_axes2_x);
     /* (rrr_leg1-omega_2) angular velocity of link 2 */
-    const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_1 + v->rrr_leg1_qd_2;
+    const real rrr_leg1_omega_2_in_axes2_z = v->rrr_leg1_qd_2 - v->rrr_leg1_qd_1_t;
     /* (rrr_leg1-W_2) centripetal tensor of link 2 */
     const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
     /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
     v->rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4;
     v->rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3;
     /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_qd_1;
+    v->rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*v->rrr_leg1_qd_1_t;
     v->rrr_leg1_bias_in_axes2_x =
-        -v->rrr_leg1_d_2_in_axes2_x*v->rrr_leg1_qd_1*v->rrr_leg1_qd_1 -
+        -v->rrr_leg1_d_2_in_axes2_x*v->rrr_leg1_qd_1_t*v->rrr_leg1_qd_1_t -
         rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*m->rrr_leg1_platform_joint_offset_x[i];
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
@@ -1909,10 +1909,9 @@ INLINE void stage_rrr_leg1_A_V_X(const prepared *m, size_t i, values_rrr_leg1 *v
     /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
     const real rrr_leg1_rel_in_axes2_x = v->rrr_leg1_S_ddot_in_axes2_x -
         v->rrr_leg1_bias_in_axes2_x;
-    const real rrr_leg1_rel_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y -
-        v->rrr_leg1_bias_in_axes2_y;
+    const real rrr_leg1_rel_in_axes2_y = v->rrr_leg1_S_ddot_in_axes2_y + v->rrr_leg1_bias_t;
     /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-    v->rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_qdd_1_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x;
     /* (rrr_leg1-qdd_2) acceleration of joint 2 */
     v->rrr_leg1_qdd_2 = m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_in_axes2_y +
         v->rrr_leg1_qdd_1_t*v->rrr_leg1_r_1_in_axes2_x);
@@ -1929,11 +1928,10 @@ INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_le
        accelerations */
     const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x -
         v->rrr_leg1_bias_in_axes2_x;
-    const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
-        v->rrr_leg1_bias_in_axes2_y;
+    const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y + v->rrr_leg1_bias_t;
     /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
     const real rrr_leg1_B_1_o_in_axes1_xy =
-        -rrr_leg1_rel_o_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+        v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_o_in_axes2_x;
     /* (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrr_leg1_alpha_2_o_in_axes2_z =
         m->rrr_leg1_w_2_in_axes2_y[i]*(rrr_leg1_rel_o_in_axes2_y +
@@ -1964,8 +1962,8 @@ INLINE void stage_rrr_leg1_Z_dynamics(const prepared *m, size_t i, values_rrr_le
     /* (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass
        at the connection point */
     const real rrr_leg1_c_o_in_axes2_x = v->rrr_leg1_c_t +
-        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_o_in_axes1_z);
     const real rrr_leg1_c_o_in_axes2_y = v->rrr_leg1_c_t_2 -
         rrr_leg1_alpha_2_o_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_o_in_axes2_y;
@@ -1983,24 +1981,26 @@ INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_le
     /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real rrr_leg1_d_Gamma_2_t_2 = m->rrr_leg1_d_Gamma_2_t[i]*v->rrr_leg1_r_1_in_axes2_x;
-    const real rrr_leg1_d_Gamma_2_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_J_2_in_spec2_zz[i] - rrr_leg1_d_Gamma_2_t_2) -
-        m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_2_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_J_2_in_spec2_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
     /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
-    const real rrr_leg1_d_Gamma_1_in_axes2_x =
-        v->rrr_leg1_w_1_in_axes2_x*(m->rrr_leg1_Jc_1_in_axes1_zz[i] - rrr_leg1_d_Gamma_2_t_2)
-        - m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_1_in_axes2_x = -m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(m->rrr_leg1_Jc_1_in_axes1_zz[i] -
+        rrr_leg1_d_Gamma_2_t_2);
     /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
        and without the mass at the connection point */
-    const real rrr_leg1_d_c_in_axes2_xy = m->rrr_leg1_d_phi_2_t[i] -
-        m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_1_in_axes2_x -
+    const real rrr_leg1_d_c_in_axes2_xy =
+        v->inv_rrr_leg1_r_1_in_axes2_y*m->rrr_leg1_d_Gamma_2_in_axes2_y[i] -
+        m->rrr_leg1_d_phi_2_in_axes2_xy[i] -
         m->rrr_leg1_d_Gamma_2_in_axes2_y[i]*v->rrr_leg1_w_2_in_axes2_x;
     /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-    const real rrr_leg1_Q_t = m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_1_in_axes2_x +
-        v->rrr_leg1_w_2_in_axes2_x) - m->rrr_leg1_d_c_in_axes2_yy[i] -
-        rrr_leg1_d_Gamma_1_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x -
-        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x;
+    const real rrr_leg1_Q_t = v->inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x -
+        m->rrr_leg1_d_c_in_axes2_yy[i] -
+        rrr_leg1_d_Gamma_2_in_axes2_x*v->rrr_leg1_w_2_in_axes2_x +
+        m->rrr_leg1_h_2_in_spec2_y[i]*(v->rrr_leg1_w_2_in_axes2_x -
+        v->inv_rrr_leg1_r_1_in_axes2_y);
     const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
     const real rrr_leg1_Q_t_3 = v->axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy +
         v->axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2;
@@ -2047,8 +2047,8 @@ INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t i, values_rrr
     /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
        point */
     v->rrr_leg1_c_in_axes2_x = v->rrr_leg1_c_t +
-        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] +
-        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_y[i] -
+        v->inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
         rrr_leg1_N_1_in_axes1_z);
     v->rrr_leg1_c_in_axes2_y = v->rrr_leg1_c_t_2 -
         rrr_leg1_alpha_2_in_axes2_z*m->rrr_leg1_h_2_in_spec2_x[i] - rrr_leg1_G_in_axes2_y;
@@ -2115,7 +2115,7 @@ INLINE void any_sums_rrr_leg1_2(size_t k, size_t count, int add, const values_rr
 INLINE void any_entries_rrr_leg1(size_t k, size_t count, const values_rrr_leg1 *v, real *o)
 {
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_leg1_w_1_x;
+    o[0*count + k] = -v->rrr_leg1_w_1_t;
     o[1*count + k] = v->rrr_leg1_w_1_y;
     /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v->rrr_leg1_H_a_1_z;
@@ -2151,7 +2151,7 @@ INLINE void any_sums_rrr_2(size_t k, size_t count, int add, const values_rrr *v,
 INLINE void any_entries_rrr(size_t k, size_t count, const values_rrr *v, real *o)
 {
     /* (rrr-w_1) reciprocal vector 1 */
-    o[0*count + k] = v->rrr_w_1_x;
+    o[0*count + k] = -v->rrr_w_1_t;
     o[1*count + k] = v->rrr_w_1_y;
     /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
     o[2*count + k] = v->rrr_H_a_1_z;
@@ -2204,7 +2204,7 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+    o[8*count + k] = (v.rrr_leg1_w_1_t + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
         (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
 }
 
@@ -2222,7 +2222,7 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, s
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
 
 INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s, const real *sums,
@@ -2276,13 +2276,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         + (Z_t_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)7)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[7] CLEARED, sums[9] CLEARED;
-    real terms_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_dynamics*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
@@ -2296,13 +2299,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2314,7 +2317,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[7*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rrr_leg1[9*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
@@ -2323,7 +2326,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2410,12 +2413,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)4)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[4] CLEARED, sums[6] CLEARED;
-    real terms_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_M*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_M*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
@@ -2429,13 +2435,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2446,7 +2452,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[4*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rrr_leg1[2*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2454,7 +2460,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2544,12 +2550,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)5)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_Z*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_Z*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
@@ -2563,13 +2572,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2581,7 +2590,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rrr_leg1[2*LANES];
     ALIGNED real o_rrr[2*LANES];
     IN_VECTORS(LANES)
@@ -2590,7 +2599,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2628,7 +2637,7 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, siz
     o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
+    o[8*count + k] = (v.rrr_leg1_w_1_t + (v.rrr_leg1_w_1_y + v.rrr_leg1_H_a_1_z)) +
         (v.rrr_leg1_w_2_x + (v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z));
 }
 
@@ -2641,12 +2650,14 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
+    o[5*count + k] = v.rrr_w_1_t + (v.rrr_w_1_y + v.rrr_H_a_1_z);
 }
+
+#define PASSED_IN_H ((size_t)2)
 
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -2670,7 +2681,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rrr_leg1[9*LANES];
     ALIGNED real o_rrr[6*LANES];
     IN_VECTORS(LANES)
@@ -2824,13 +2835,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)5)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[5] CLEARED, sums[3] CLEARED;
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] CLEARED, o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_required*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_required*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
@@ -2850,13 +2864,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         required_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         required_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -2868,7 +2882,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[5*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rrr_leg1[8*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -2877,7 +2891,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_2(m, LANES, k, X, &v, s);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2962,9 +2976,11 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t k, size_t at, size_t c
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)2)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -2988,7 +3004,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rrr_leg1[5*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3026,14 +3042,14 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t i, siz
     stage_rrr_leg1_X(m, w, i, j, s, X, &v);
     stage_rrr_leg1_V_X(m, w, i, j, V, &v);
     /* (rrr_leg1-qd_1) rate of joint 1 */
-    o[0*count + k] = v.rrr_leg1_qd_1;
+    o[0*count + k] = -v.rrr_leg1_qd_1_t;
     /* (rrr_leg1-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_leg1_qd_2;
     o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[4*count + k] = v.rrr_leg1_qd_1 + v.rrr_leg1_qd_2;
+    o[4*count + k] = v.rrr_leg1_qd_1_t + v.rrr_leg1_qd_2;
 }
 
 INLINE void joint_rates_place_rrr_leg1(size_t w, size_t k, size_t at, size_t count, const real *o,
@@ -3053,13 +3069,13 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t i, size_t j
     stage_rrr_X(m, w, i, j, s, X, &v);
     stage_rrr_V_X(m, w, i, j, V, &v);
     /* (rrr-qd_1) rate of joint 1 */
-    o[0*count + k] = v.rrr_qd_1;
+    o[0*count + k] = -v.rrr_qd_1_t;
     /* (rrr-qd_2) rate of joint 2 */
     o[1*count + k] = v.rrr_qd_2;
     o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[4*count + k] = v.rrr_qd_1 + v.rrr_qd_2;
+    o[4*count + k] = v.rrr_qd_1_t + v.rrr_qd_2;
 }
 
 INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -3072,10 +3088,12 @@ INLINE void joint_rates_place_rrr(size_t w, size_t k, size_t at, size_t count, c
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)2)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3099,7 +3117,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rrr_leg1[5*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3187,10 +3205,12 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t k, size_t at, size_t 
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)2)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[5*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
@@ -3214,7 +3234,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[2*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rrr_leg1[5*LANES];
     ALIGNED real o_rrr[5*LANES];
     IN_VECTORS(LANES)
@@ -3267,7 +3287,7 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_t j, 
     o[0*count + k] = rrr_leg1_c_true_x;
     o[1*count + k] = rrr_leg1_c_true_y;
     /* (rrr_leg1-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_leg1_w_1_x;
+    o[2*count + k] = -v.rrr_leg1_w_1_t;
     o[3*count + k] = v.rrr_leg1_w_1_y;
     /* (rrr_leg1-w_2) reciprocal vector 2 */
     o[4*count + k] = v.rrr_leg1_w_2_x;
@@ -3313,7 +3333,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, size_
     o[0*count + k] = rrr_c_true_x;
     o[1*count + k] = rrr_c_true_y;
     /* (rrr-w_1) reciprocal vector 1 */
-    o[2*count + k] = v.rrr_w_1_x;
+    o[2*count + k] = -v.rrr_w_1_t;
     o[3*count + k] = v.rrr_w_1_y;
     o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
@@ -3331,10 +3351,12 @@ INLINE void legs_place_rrr(size_t w, size_t k, size_t at, size_t count, const re
     t->singular[k] += o[5*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)2)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[2] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
     real o_rrr[6*LEGS(LEGS_OF_rrr)] CLEARED;
     clear(leg_force, 3*NL);
@@ -3391,7 +3413,7 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
         m->rrr_leg1_potential_t[i]*v.rrr_leg1_s_1) -
         m->rrr_leg1_h_2_in_spec2_x[i]*v.rrr_leg1_s_2_t);
     /* (potential) */
-    gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, rrr_leg1_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]);
@@ -3411,7 +3433,7 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
         m->rrr_link1_mass[i]*(v.rrr_c_1*m->rrr_potential_t_2[i] -
         m->rrr_potential_t[i]*v.rrr_s_1) - m->rrr_h_2_in_spec2_x[i]*v.rrr_s_2_t);
     /* (potential) */
-    gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
+    gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
     o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i]);
 }
@@ -3421,17 +3443,20 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     /* (potential) */
     const real potential_of_legs = sums[0*w + k];
     const real potential_t = s[2*w + k];
-    const real potential_t_2 = sums[1*w + k];
-    const real potential_ = potential_of_legs - potential_t - potential_t_2;
+    const real potential_ = -potential_t - potential_of_legs;
     /* (potential) */
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)3)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[3] CLEARED, sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_potential*LEGS(LEGS_OF_rrr_leg1)] CLEARED,
+        o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_potential*LEGS(LEGS_OF_rrr)] CLEARED, o_rrr[2*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s);
     for (size_t i = 0; i < LEGS(LEGS_OF_rrr_leg1); i += BESIDE(LEGS_OF_rrr_leg1)) {
@@ -3451,13 +3476,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         any_place_rrr_leg1_2(0, i, LEGS(LEGS_OF_rrr), o_rrr, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }
@@ -3505,7 +3530,7 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t i, size_
     o[9*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
         TOLERANCE*TOLERANCE*m->rrr_leg1_rho2_1_t[i]) +
         UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) > TOLERANCE*m->rrr_leg1_size[i]);
-    o[10*count + k] = ((v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
+    o[10*count + k] = ((v.rrr_leg1_w_1_t + v.rrr_leg1_w_1_y) + (v.rrr_leg1_H_a_1_z +
         v.rrr_leg1_w_2_x)) + ((v.rrr_leg1_w_2_y + v.rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots
         + v.rrr_leg1_disc_1));
 }
@@ -3550,7 +3575,7 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t i, size_t j, 
     o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*m->rrr_rho2_1_t[i])
         + UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*m->rrr_size[i]);
-    o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+    o[7*count + k] = (v.rrr_w_1_t + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
         v.rrr_disc_1));
 }
 
@@ -3578,13 +3603,16 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)2)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[2] CLEARED, sums[2] CLEARED;
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)]
-        CLEARED;
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rrr_leg1[SUMS_OF_condition*LEGS(LEGS_OF_rrr_leg1)] = {0},
+        o_rrr_leg1[11*LEGS(LEGS_OF_rrr_leg1)] CLEARED;
+    real terms_rrr[SUMS_OF_condition*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] CLEARED;
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_rrr_leg1))
@@ -3598,13 +3626,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_rrr_leg1; ++i) {
         condition_place_rrr_leg1(1, 0, i, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
     for (size_t i = 0; i < LEGS_OF_rrr; ++i) {
         condition_place_rrr(1, 0, i, LEGS(LEGS_OF_rrr), o_rrr, H, pivots, reach, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
             sums[n] += terms_rrr[n*LEGS(LEGS_OF_rrr) + leg];
         }

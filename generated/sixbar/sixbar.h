@@ -128,7 +128,7 @@ typedef struct {
             rrr_leg1_base_frame_xx[1], rrr_leg1_base_frame_xy[1], rrr_leg1_base_frame_yx[1],
             rrr_leg1_base_frame_yy[1], rrr_leg1_base_point_x[1], rrr_leg1_base_point_y[1],
             rrr_leg1_branch_1[1], rrr_leg1_d_Gamma_2_in_axes2_y[1], rrr_leg1_d_Gamma_2_t[1],
-            rrr_leg1_d_c_in_axes2_yy[1], rrr_leg1_d_phi_2_t[1], rrr_leg1_h_1_in_spec1_x[1],
+            rrr_leg1_d_c_in_axes2_yy[1], rrr_leg1_d_phi_2_in_axes2_xy[1], rrr_leg1_h_1_in_spec1_x[1],
             rrr_leg1_h_1_in_spec1_y[1], rrr_leg1_h_2_in_spec2_x[1], rrr_leg1_h_2_in_spec2_y[1],
             rrr_leg1_joint2_offset_x[1], rrr_leg1_link1_mass[1], rrr_leg1_link2_mass[1],
             rrr_leg1_mu_1_t[1], rrr_leg1_mu_1_t_2[1], rrr_leg1_platform_joint_offset_x[1],
@@ -140,12 +140,12 @@ typedef struct {
             rrr_J_1_in_spec1_zz[1], rrr_J_2_in_spec2_zz[1], rrr_Jc_1_in_axes1_zz[1], rrr_Kd_1_t[1],
             rrr_Kd_1_t_2[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1],
             rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1], rrr_branch_1[1],
-            rrr_d_Gamma_2_in_axes2_y[1], rrr_d_Gamma_2_t[1], rrr_d_c_in_axes2_yy[1], rrr_d_phi_2_t[1],
-            rrr_h_1_in_spec1_x[1], rrr_h_1_in_spec1_y[1], rrr_h_2_in_spec2_x[1],
-            rrr_h_2_in_spec2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_mu_1_t[1], rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
-            rrr_platform_point_y[1], rrr_potential_t[1], rrr_potential_t_2[1], rrr_rho2_1_t[1],
-            rrr_size[1], rrr_w_2_in_axes2_y[1];
+            rrr_d_Gamma_2_in_axes2_y[1], rrr_d_Gamma_2_t[1], rrr_d_c_in_axes2_yy[1],
+            rrr_d_phi_2_in_axes2_xy[1], rrr_h_1_in_spec1_x[1], rrr_h_1_in_spec1_y[1],
+            rrr_h_2_in_spec2_x[1], rrr_h_2_in_spec2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
+            rrr_link2_mass[1], rrr_mu_1_t[1], rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1],
+            rrr_platform_point_x[1], rrr_platform_point_y[1], rrr_potential_t[1],
+            rrr_potential_t_2[1], rrr_rho2_1_t[1], rrr_size[1], rrr_w_2_in_axes2_y[1];
     sixbar_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x, gravity_y,
             h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star;
 } sixbar_model;

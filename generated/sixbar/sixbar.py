@@ -19,6 +19,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -621,7 +622,7 @@ def _prepare(p):
     # (rrr_leg1-w_2) reciprocal vector 2
     rrr_leg1_w_2_in_axes2_y = 1.0/rrr_leg1_platform_joint_offset_x
     # (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_leg1_d_phi_2_t = rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y
+    rrr_leg1_d_phi_2_in_axes2_xy = -rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y
     # (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
     rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz + rrr_leg1_J_2_in_spec2_zz
     # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -698,7 +699,7 @@ def _prepare(p):
     # (rrr-w_2) reciprocal vector 2
     rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
     # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
+    rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
     # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
     rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
     # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -766,7 +767,7 @@ def _prepare(p):
                     rrr_leg1_Kd_1_t_2, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
                     rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
                     rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y,
-                    rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t,
+                    rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
                     rrr_leg1_h_1_in_spec1_x, rrr_leg1_h_1_in_spec1_y, rrr_leg1_h_2_in_spec2_x,
                     rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x, rrr_leg1_mu_1_t,
                     rrr_leg1_mu_1_t_2, rrr_leg1_platform_joint_offset_x,
@@ -778,10 +779,11 @@ def _prepare(p):
                     rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
-                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
-                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t,
-                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x,
+                    rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+                    rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -794,19 +796,20 @@ def _prepare(p):
                     rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx,
                     rrr_leg1_base_frame_yy, rrr_leg1_base_point_x, rrr_leg1_base_point_y,
                     rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y, rrr_leg1_d_Gamma_2_t,
-                    rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t, rrr_leg1_h_2_in_spec2_y,
-                    rrr_leg1_joint2_offset_x, rrr_leg1_platform_joint_offset_x,
-                    rrr_leg1_platform_point_x, rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t,
-                    rrr_leg1_size, rrr_leg1_w_2_in_axes2_y,),
+                    rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
+                    rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
+                    rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
+                    rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size,
+                    rrr_leg1_w_2_in_axes2_y,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
                     rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
-                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
-                    rrr_w_2_in_axes2_y,),
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+                    rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -1016,6 +1019,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1034,10 +1038,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1065,10 +1069,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1119,14 +1123,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1139,35 +1142,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1177,7 +1185,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1659,7 +1668,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2012,7 +2021,7 @@ def _run_dynamics(m, X, V):
             rrr_leg1_Kd_1_t_2, rrr_leg1_base_frame_xx, rrr_leg1_base_frame_xy,
             rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy, rrr_leg1_base_point_x,
             rrr_leg1_base_point_y, rrr_leg1_branch_1, rrr_leg1_d_Gamma_2_in_axes2_y,
-            rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_t,
+            rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy, rrr_leg1_d_phi_2_in_axes2_xy,
             rrr_leg1_h_1_in_spec1_x, rrr_leg1_h_1_in_spec1_y, rrr_leg1_h_2_in_spec2_x,
             rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x, rrr_leg1_mu_1_t, rrr_leg1_mu_1_t_2,
             rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
@@ -2084,12 +2093,12 @@ def _run_dynamics(m, X, V):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -2100,14 +2109,14 @@ def _run_dynamics(m, X, V):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -2120,16 +2129,16 @@ def _run_dynamics(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_bias_t + rrr_leg1_u_1_in_axes2_y
         # (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1
-        rrr_leg1_B_1_o_in_axes1_xy = -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_B_1_o_in_axes1_xy = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_o_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
@@ -2154,8 +2163,8 @@ def _run_dynamics(m, X, V):
         # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x
         rrr_leg1_d_Gamma_2_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_J_2_in_spec2_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_leg1_g_in_axes1_x = rrr_leg1_c_1*rrr_leg1_mu_1_t + rrr_leg1_mu_1_t_2*rrr_leg1_s_1
@@ -2172,8 +2181,8 @@ def _run_dynamics(m, X, V):
         rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z + rrr_leg1_mu_2_o_in_axes2_z
         # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_1_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_Jc_1_in_axes1_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y
@@ -2182,13 +2191,13 @@ def _run_dynamics(m, X, V):
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
-        rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_2_in_axes2_y - rrr_leg1_d_phi_2_in_axes2_xy -
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
@@ -2197,9 +2206,9 @@ def _run_dynamics(m, X, V):
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_leg1_Q_t = (
-        rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
-            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x +
+            rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_2_in_axes2_x - inv_rrr_leg1_r_1_in_axes2_y) -
+            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
         rrr_leg1_Q_t_3 = (
@@ -2230,7 +2239,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         rrr_leg1_Z_a_t = rrr_leg1_U_y*rrr_leg1_q_x - rrr_leg1_U_x*rrr_leg1_q_y
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
-        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x
+        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y + rrr_leg1_q_y*rrr_leg1_w_1_t
         # (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin
         rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x
         ok = (
@@ -2252,7 +2261,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         Z_a_rrr_leg1_z += rrr_leg1_Z_a_t
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_H_a_1_z
@@ -2271,7 +2280,7 @@ def _run_dynamics(m, X, V):
             rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
             rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
             rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
-            rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
             rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
             rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
             rrr_size, rrr_w_2_in_axes2_y,
@@ -2322,20 +2331,20 @@ def _run_dynamics(m, X, V):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -2344,16 +2353,16 @@ def _run_dynamics(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_o_in_axes2_y = rrr_bias_t + rrr_u_1_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
-        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
@@ -2373,7 +2382,7 @@ def _run_dynamics(m, X, V):
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrr_g_in_axes1_x = rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1
@@ -2385,7 +2394,7 @@ def _run_dynamics(m, X, V):
         rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
@@ -2394,21 +2403,21 @@ def _run_dynamics(m, X, V):
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
-        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
         rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
-        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
-            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
         rrr_Q_t_2 = 0.5*rrr_Q_t
@@ -2428,7 +2437,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -2448,7 +2457,7 @@ def _run_dynamics(m, X, V):
         # (Z_a) rotational part of Z
         Z_a_rrr_z += rrr_Z_a_t
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -2517,7 +2526,7 @@ def _run_M(m, X):
             rrr_leg1_base_frame_xy, rrr_leg1_base_frame_yx, rrr_leg1_base_frame_yy,
             rrr_leg1_base_point_x, rrr_leg1_base_point_y, rrr_leg1_branch_1,
             rrr_leg1_d_Gamma_2_in_axes2_y, rrr_leg1_d_Gamma_2_t, rrr_leg1_d_c_in_axes2_yy,
-            rrr_leg1_d_phi_2_t, rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
+            rrr_leg1_d_phi_2_in_axes2_xy, rrr_leg1_h_2_in_spec2_y, rrr_leg1_joint2_offset_x,
             rrr_leg1_platform_joint_offset_x, rrr_leg1_platform_point_x,
             rrr_leg1_platform_point_y, rrr_leg1_rho2_1_t, rrr_leg1_size, rrr_leg1_w_2_in_axes2_y,
         ) = k
@@ -2580,32 +2589,32 @@ def _run_M(m, X):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         # (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x
         rrr_leg1_d_Gamma_2_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_J_2_in_spec2_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_leg1_d_Gamma_1_in_axes2_x = (
-        rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y
+        -rrr_leg1_h_2_in_spec2_y - inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_Jc_1_in_axes1_zz -
+            rrr_leg1_d_Gamma_2_t_2)
         )
         # (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_d_c_in_axes2_xy = (
-        rrr_leg1_d_phi_2_t - rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_2_in_axes2_y - rrr_leg1_d_phi_2_in_axes2_xy -
             rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_leg1_Q_t = (
-        rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x + rrr_leg1_w_2_in_axes2_x) -
-            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_d_Gamma_1_in_axes2_x +
+            rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_2_in_axes2_x - inv_rrr_leg1_r_1_in_axes2_y) -
+            rrr_leg1_d_c_in_axes2_yy - rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         rrr_leg1_Q_t_2 = 0.5*rrr_leg1_Q_t
         rrr_leg1_Q_t_3 = (
@@ -2643,10 +2652,10 @@ def _run_M(m, X):
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
             rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
-            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
-            rrr_w_2_in_axes2_y,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
@@ -2689,27 +2698,27 @@ def _run_M(m, X):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
         rrr_d_Gamma_2_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrr_d_Gamma_1_in_axes2_x = (
-        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrr_d_c_in_axes2_xy = (
-        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
             rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
         )
         # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
         rrr_Q_t = (
-        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
-            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
             rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
         )
         rrr_Q_t_2 = 0.5*rrr_Q_t
@@ -2875,16 +2884,16 @@ def _run_Z(m, X, V):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -2897,16 +2906,16 @@ def _run_Z(m, X, V):
         axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x - axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        rrr_leg1_rel_o_in_axes2_y = rrr_leg1_bias_t + rrr_leg1_u_1_in_axes2_y
         # (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1
-        rrr_leg1_B_1_o_in_axes1_xy = -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_B_1_o_in_axes1_xy = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_o_in_axes2_x
         # (rrr_leg1-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_leg1_alpha_2_o_in_axes2_z = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
@@ -2948,8 +2957,8 @@ def _run_Z(m, X, V):
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         # (rrr_leg1-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_leg1_c_o_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z)
         )
         rrr_leg1_c_o_in_axes2_y = (
@@ -3033,16 +3042,16 @@ def _run_Z(m, X, V):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -3051,16 +3060,16 @@ def _run_Z(m, X, V):
         rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
         rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_o_in_axes2_y = rrr_bias_t + rrr_u_1_in_axes2_y
         # (rrr-B_1_o) remainder of the acceleration tensor of link 1
-        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder of: angular acceleration of link 2
         rrr_alpha_2_o_in_axes2_z = (
         rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
@@ -3092,8 +3101,8 @@ def _run_Z(m, X, V):
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         # (rrr-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         rrr_c_o_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
         rrr_c_o_in_axes2_y = (
         rrr_c_t_2 - rrr_G_o_in_axes2_y - rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
@@ -3209,12 +3218,12 @@ def _run_H(m, X):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3225,7 +3234,7 @@ def _run_H(m, X):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
-        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x
+        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y + rrr_leg1_q_y*rrr_leg1_w_1_t
         # (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin
         rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x
         ok = (
@@ -3233,7 +3242,7 @@ def _run_H(m, X):
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
         )
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_H_a_1_z
@@ -3288,17 +3297,17 @@ def _run_H(m, X):
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -3430,12 +3439,12 @@ def _run_required(m, X, V, A):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -3446,14 +3455,14 @@ def _run_required(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -3472,16 +3481,16 @@ def _run_required(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -3520,8 +3529,8 @@ def _run_required(m, X, V, A):
         rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
@@ -3539,7 +3548,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         rrr_leg1_R_a_t = rrr_leg1_c_x*rrr_leg1_q_y - rrr_leg1_c_y*rrr_leg1_q_x
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
-        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x
+        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y + rrr_leg1_q_y*rrr_leg1_w_1_t
         # (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin
         rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x
         ok = (
@@ -3552,7 +3561,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         R_a_rrr_leg1_z += rrr_leg1_R_a_t
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_H_a_1_z
@@ -3618,18 +3627,18 @@ def _run_required(m, X, V, A):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -3644,16 +3653,16 @@ def _run_required(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
@@ -3681,8 +3690,8 @@ def _run_required(m, X, V, A):
         rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
         rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
@@ -3692,7 +3701,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
@@ -3703,7 +3712,7 @@ def _run_required(m, X, V, A):
         # (R_a) moment that actuators and external wrench must give
         R_a_rrr_z += rrr_R_a_t
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
@@ -3950,20 +3959,20 @@ def _run_joint_rates(m, X, V):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_leg1_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_leg1_rho2_1_t) &
             (rrr_leg1_disc_1 >= 0.0) & (abs(rrr_leg1_r_1_in_axes2_y) > _TOLERANCE * rrr_leg1_size)
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        out_qd[_qd_rrr_leg1[0][leg]] = rrr_leg1_qd_1
+        out_qd[_qd_rrr_leg1[0][leg]] = -rrr_leg1_qd_1_t
         # (rrr_leg1-qd_2) rate of joint 2
         out_qd[_qd_rrr_leg1[1][leg]] = rrr_leg1_qd_2
     for leg, k in legs[1]:
@@ -4020,20 +4029,20 @@ def _run_joint_rates(m, X, V):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         ok = (
         ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0) &
             (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size)
         )
         # (rrr-qd_1) rate of joint 1
-        out_qd[_qd_rrr[0][leg]] = rrr_qd_1
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t
         # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
@@ -4144,16 +4153,16 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
         rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_4
         rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_3
@@ -4170,16 +4179,16 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -4247,16 +4256,16 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-u_1) centripetal acceleration of the connection point
         rrr_u_1_x = -omega_z*rrr_S_dot_t_4
         rrr_u_1_t = omega_z*rrr_S_dot_t_3
@@ -4269,16 +4278,16 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
@@ -4402,12 +4411,12 @@ def _run_legs(m, X, V, A):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -4418,14 +4427,14 @@ def _run_legs(m, X, V, A):
             axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x
         )
         # (rrr_leg1-qd_1) rate of joint 1
-        rrr_leg1_qd_1 = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_S_dot_in_axes2_x
         # (rrr_leg1-qd_2) rate of joint 2
         rrr_leg1_qd_2 = (
         rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x)
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x + rrr_leg1_qd_1_t*rrr_leg1_r_1_in_axes2_x)
         )
         # (rrr_leg1-omega_2) angular velocity of link 2
-        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 + rrr_leg1_qd_2
+        rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_2 - rrr_leg1_qd_1_t
         # (rrr_leg1-W_2) centripetal tensor of link 2
         rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z
         # (rrr_leg1-u_1) centripetal acceleration of the connection point
@@ -4444,16 +4453,16 @@ def _run_legs(m, X, V, A):
         axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y + axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x
         )
         # (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations
-        rrr_leg1_bias_in_axes2_y = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1
+        rrr_leg1_bias_t = rrr_leg1_S_dot_in_axes2_x*rrr_leg1_qd_1_t
         rrr_leg1_bias_in_axes2_x = (
-        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1*rrr_leg1_qd_1 -
+        -rrr_leg1_d_2_in_axes2_x*rrr_leg1_qd_1_t*rrr_leg1_qd_1_t -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
         )
         # (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations
         rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x - rrr_leg1_bias_in_axes2_x
-        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y - rrr_leg1_bias_in_axes2_y
+        rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y + rrr_leg1_bias_t
         # (rrr_leg1-qdd_1) acceleration of joint 1
-        rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x
+        rrr_leg1_qdd_1_t = inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_rel_in_axes2_x
         # (rrr_leg1-qdd_2) acceleration of joint 2
         rrr_leg1_qdd_2 = (
         rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
@@ -4492,8 +4501,8 @@ def _run_legs(m, X, V, A):
         rrr_leg1_c_t = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x
         rrr_leg1_c_t_2 = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y
         rrr_leg1_c_in_axes2_x = (
-        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_c_t + rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y -
+            inv_rrr_leg1_r_1_in_axes2_y*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_in_axes1_z)
         )
         rrr_leg1_c_in_axes2_y = (
@@ -4523,7 +4532,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_rrr_leg1[0][leg]] = rrr_leg1_c_true_x
         out_leg_force[_leg_force_rrr_leg1[1][leg]] = rrr_leg1_c_true_y
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_actuator[_actuator_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_actuator[_actuator_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_actuator[_actuator_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-w_2) reciprocal vector 2
         out_actuator[_actuator_rrr_leg1[2][leg]] = rrr_leg1_w_2_x
@@ -4584,18 +4593,18 @@ def _run_legs(m, X, V, A):
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         rrr_r_1_in_axes2_x = rrr_d_2_in_axes2_x + rrr_platform_joint_offset_x
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-qd_1) rate of joint 1
-        rrr_qd_1 = rrr_S_dot_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*rrr_S_dot_in_axes2_x
         # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x)
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x)
         )
         # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_in_axes2_z = rrr_qd_1 + rrr_qd_2
+        rrr_omega_2_in_axes2_z = rrr_qd_2 - rrr_qd_1_t
         # (rrr-W_2) centripetal tensor of link 2
         rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-u_1) centripetal acceleration of the connection point
@@ -4610,16 +4619,16 @@ def _run_legs(m, X, V, A):
         rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
         rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_in_axes2_y = rrr_S_dot_in_axes2_x*rrr_qd_1
+        rrr_bias_t = rrr_S_dot_in_axes2_x*rrr_qd_1_t
         rrr_bias_in_axes2_x = (
-        -rrr_d_2_in_axes2_x*rrr_qd_1*rrr_qd_1 -
+        -rrr_d_2_in_axes2_x*rrr_qd_1_t*rrr_qd_1_t -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
         rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
-        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_bias_in_axes2_y
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y + rrr_bias_t
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-qdd_2) acceleration of joint 2
         rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         # (rrr-alpha_2) angular acceleration of link 2
@@ -4647,8 +4656,8 @@ def _run_legs(m, X, V, A):
         rrr_c_t = rrr_W_2_t*rrr_h_2_in_spec2_x
         rrr_c_t_2 = rrr_W_2_t*rrr_h_2_in_spec2_y
         rrr_c_in_axes2_x = (
-        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
+        rrr_c_t + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
         rrr_c_in_axes2_y = (
         rrr_c_t_2 - rrr_G_in_axes2_y - rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
@@ -4670,7 +4679,7 @@ def _run_legs(m, X, V, A):
         out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
         out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
         # (rrr-w_1) reciprocal vector 1
-        out_actuator[_actuator_rrr[0][leg]] = rrr_w_1_x
+        out_actuator[_actuator_rrr[0][leg]] = -rrr_w_1_t
         out_actuator[_actuator_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_actuator,)
 
@@ -4697,7 +4706,7 @@ def _run_potential(m, X):
     h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (potential) potential energy
     potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y + m_star*t_y)
-    potential_rrr_leg1, = [0.0] * 1
+    potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_rrr_leg1_size_t, inv_rrr_leg1_size_t_2, rrr_leg1_Kd_1_t, rrr_leg1_Kd_1_t_2,
@@ -4773,8 +4782,8 @@ def _run_potential(m, X):
             (rrr_leg1_disc_1 >= 0.0)
         )
         # (potential) potential energy
-        potential_rrr_leg1 += -rrr_leg1_potential_t_3
-    potential_t_2, = [0.0] * 1
+        potential_t_2 += rrr_leg1_potential_t_3
+    potential_t_3, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -4828,9 +4837,9 @@ def _run_potential(m, X):
         )
         ok = ok & (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1 >= 0.0)
         # (potential) potential energy
-        potential_t_2 += rrr_potential_t_3
+        potential_t_3 += rrr_potential_t_3
     # (potential) potential energy
-    potential = potential_rrr_leg1 - potential_t - potential_t_2
+    potential = -potential_t - potential_t_2 - potential_t_3
     # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -4930,12 +4939,12 @@ def _run_condition(m, X):
         rrr_leg1_r_1_in_axes2_y = rrr_leg1_joint2_offset_x*rrr_leg1_s_2_t
         rrr_leg1_r_1_in_axes2_x = rrr_leg1_d_2_in_axes2_x + rrr_leg1_platform_joint_offset_x
         # (rrr_leg1-w_1) reciprocal vector 1
-        rrr_leg1_w_1_in_axes2_x = -1.0/rrr_leg1_r_1_in_axes2_y
-        rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
-        rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x
+        inv_rrr_leg1_r_1_in_axes2_y = 1.0/rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_t = axis_x_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
+        rrr_leg1_w_1_y = axis_y_rrr_leg1_axes2_x*inv_rrr_leg1_r_1_in_axes2_y
         # (rrr_leg1-w_2) reciprocal vector 2
         rrr_leg1_w_2_in_axes2_x = (
-        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
+        inv_rrr_leg1_r_1_in_axes2_y*rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y
         )
         rrr_leg1_w_2_x = (
         axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
@@ -4953,7 +4962,7 @@ def _run_condition(m, X):
             inv_rrr_leg1_size*rrr_leg1_pivot_size_2)
         )
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
-        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x
+        rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y + rrr_leg1_q_y*rrr_leg1_w_1_t
         # (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin
         rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x
         # (spread) rms distance of the platform points from their centroid
@@ -4970,7 +4979,7 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rrr_leg1 += rrr_leg1_spread_t_3
         # (rrr_leg1-w_1) reciprocal vector 1
-        out_H[_H_rrr_leg1[0][leg]] = rrr_leg1_w_1_x
+        out_H[_H_rrr_leg1[0][leg]] = -rrr_leg1_w_1_t
         out_H[_H_rrr_leg1[1][leg]] = rrr_leg1_w_1_y
         # (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr_leg1[2][leg]] = rrr_leg1_H_a_1_z
@@ -5030,9 +5039,9 @@ def _run_condition(m, X):
         # (rrr-r_1) from joint 1 to the connection point, along the links
         rrr_r_1_in_axes2_y = rrr_joint2_offset_x*rrr_s_2_t
         # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
-        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
-        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_t = axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrr_pivot_size = abs(rrr_rho2_1)
         rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
@@ -5040,7 +5049,7 @@ def _run_condition(m, X):
         least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y + rrr_q_y*rrr_w_1_t
         # (spread) rms distance of the platform points from their centroid
         rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
         rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
@@ -5053,7 +5062,7 @@ def _run_condition(m, X):
         # (spread) rms distance of the platform points from their centroid
         spread_rrr += rrr_spread_t_3
         # (rrr-w_1) reciprocal vector 1
-        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
         out_H[_H_rrr[1][leg]] = rrr_w_1_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z

@@ -2112,11 +2112,14 @@ INLINE void dynamics_after(size_t w, size_t k, const real *s, const real *sums, 
         + (Z_a_y + Z_a_z)));
 }
 
+#define PASSED_IN_dynamics ((size_t)27)
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[27] CLEARED, sums[9] CLEARED;
-    real terms_ups[9*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2126,7 +2129,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_between(1, 0, V, &v, s);
@@ -2136,7 +2139,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[27*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2144,7 +2147,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(LANES, k, V, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2206,10 +2209,13 @@ INLINE void M_after(size_t w, size_t k, const real *s, const real *sums, real *M
     t->total[k] += (M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz));
 }
 
+#define PASSED_IN_M ((size_t)24)
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2219,7 +2225,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(1, 0, s, sums, M, t);
@@ -2228,14 +2234,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2291,10 +2297,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += Z_a_x + (Z_a_y + Z_a_z);
 }
 
+#define PASSED_IN_Z ((size_t)21)
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[21] CLEARED, sums[3] CLEARED;
-    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2304,7 +2313,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     Z_between(1, 0, V, &v, s);
@@ -2314,7 +2323,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[21*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2322,7 +2331,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(LANES, k, V, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2351,9 +2360,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
     o[4*count + k] = v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z);
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2369,7 +2380,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2492,11 +2503,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)21)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[21] CLEARED, sums[3] CLEARED;
-    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -2509,7 +2523,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -2519,7 +2533,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[21*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2527,7 +2541,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2581,9 +2595,11 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2599,7 +2615,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2645,10 +2661,12 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2664,7 +2682,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2713,10 +2731,12 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -2732,7 +2752,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2803,10 +2823,12 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[6*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -2892,10 +2914,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -2907,7 +2932,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     potential_between(m, 1, 0, &v, s);
@@ -2984,11 +3009,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -2999,7 +3027,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     condition_after(m, 1, 0, sums, lengths, t);

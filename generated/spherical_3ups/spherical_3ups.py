@@ -20,6 +20,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -819,6 +820,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -837,10 +839,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -868,10 +870,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -922,14 +924,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -942,35 +943,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -980,7 +986,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1462,7 +1469,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 

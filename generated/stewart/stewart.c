@@ -1907,13 +1907,13 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
     v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
     v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
-    v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
+    v->ups_M_ta_t_9 = v->ups_Q_xz*v->ups_q_y - ups_M_ta_t_4;
     /* (M_aa) rotational block of M */
     v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
     v->ups_M_aa_t_2 = v->ups_M_ta_t_8*v->ups_q_y - v->ups_M_ta_t_5*v->ups_q_z;
-    v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_6*v->ups_q_z + v->ups_M_ta_t_9*v->ups_q_y;
     v->ups_M_aa_t_4 = v->ups_M_ta_t*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_x;
-    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z - v->ups_M_ta_t_9*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z + v->ups_M_ta_t_9*v->ups_q_x;
     v->ups_M_aa_t_6 = v->ups_M_ta_t_6*v->ups_q_x - v->ups_M_ta_t_2*v->ups_q_y;
 }
 
@@ -2013,7 +2013,7 @@ INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, r
     gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
     gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[7*count + k], add, -v->ups_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->ups_M_ta_t);  /* M_ta_xy_of_legs */
     gather(&terms[9*count + k], add, v->ups_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v->ups_M_ta_t_3);  /* M_ta_yx_of_legs */
@@ -2177,7 +2177,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2263,11 +2263,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_ups[26*LEGS(LEGS_OF_ups)] CLEARED, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2277,7 +2280,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2287,7 +2290,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2295,7 +2298,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2361,7 +2364,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2419,10 +2422,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_ups[20*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2432,7 +2438,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2441,14 +2447,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2521,10 +2527,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2534,7 +2543,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2544,7 +2553,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2552,7 +2561,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2582,9 +2591,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2600,7 +2611,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2762,11 +2773,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -2779,7 +2793,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -2789,7 +2803,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2797,7 +2811,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2851,9 +2865,11 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2869,7 +2885,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2915,10 +2931,12 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2934,7 +2952,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2983,10 +3001,12 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3002,7 +3022,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3073,10 +3093,12 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[6*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3163,10 +3185,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -3179,7 +3204,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3260,11 +3285,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3275,7 +3303,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     condition_after(m, 1, 0, sums, lengths, t);

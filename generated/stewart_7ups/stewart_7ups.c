@@ -1819,7 +1819,7 @@ typedef struct {
         ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
         ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
         ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
-        ups_Z_a_t_3, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz, ups_Q_yz, ups_M_ta_t,
+        ups_Z_a_t_3, ups_Q_xx, ups_Q_yy, ups_Q_zz, ups_Q_xy, ups_Q_xz, ups_Q_yz, ups_M_ta_t,
         ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7, ups_M_ta_t_8,
         ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5,
         ups_M_aa_t_6, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
@@ -2109,47 +2109,46 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
     const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_y_ups_axes2_x*ups_Q_t -
-        v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_y_ups_axes2_y*ups_Q_t -
-        v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_z*ups_Q_t - v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_y*ups_Q_t_2;
     const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_y_ups_axes2_x*ups_Q_t_3 + v->axis_z_ups_axes2_x*ups_Q_t_6;
-    v->ups_Q_t_10 = 2*ups_Q_t_9;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_y*ups_Q_t_4 + v->axis_z_ups_axes2_y*ups_Q_t_7;
-    v->ups_Q_yy = -2*ups_Q_t_11;
-    v->ups_Q_zz = v->ups_Q_t_10 - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_yy;
-    v->ups_Q_t_12 = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 +
-        v->axis_z_ups_axes2_x*ups_Q_t_7 + v->axis_z_ups_axes2_y*ups_Q_t_6;
-    v->ups_Q_xz = v->axis_y_ups_axes2_x*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_3 -
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_zz = -ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_xx - v->ups_Q_yy;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    v->ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
     /* (M_ta) coupling block of M */
-    v->ups_M_ta_t = v->ups_Q_t_10*v->ups_q_z + v->ups_Q_xz*v->ups_q_x;
-    v->ups_M_ta_t_2 = v->ups_Q_t_10*v->ups_q_y - v->ups_Q_t_12*v->ups_q_x;
+    v->ups_M_ta_t = v->ups_Q_xz*v->ups_q_x - v->ups_Q_xx*v->ups_q_z;
+    v->ups_M_ta_t_2 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
     v->ups_M_ta_t_3 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
     const real ups_M_ta_t_4 = v->ups_Q_yz*v->ups_q_x;
-    v->ups_M_ta_t_5 = v->ups_Q_t_12*v->ups_q_z + ups_M_ta_t_4;
-    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x + v->ups_Q_t_12*v->ups_q_y;
+    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_z - ups_M_ta_t_4;
+    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
     v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
     v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
-    v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
+    v->ups_M_ta_t_9 = v->ups_Q_xz*v->ups_q_y - ups_M_ta_t_4;
     /* (M_aa) rotational block of M */
     v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
-    v->ups_M_aa_t_2 = v->ups_M_ta_t_5*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_y;
-    v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_8*v->ups_q_y - v->ups_M_ta_t_5*v->ups_q_z;
+    v->ups_M_aa_t_3 = v->ups_M_ta_t_6*v->ups_q_z + v->ups_M_ta_t_9*v->ups_q_y;
     v->ups_M_aa_t_4 = v->ups_M_ta_t*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_x;
-    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z - v->ups_M_ta_t_9*v->ups_q_x;
+    v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z + v->ups_M_ta_t_9*v->ups_q_x;
     v->ups_M_aa_t_6 = v->ups_M_ta_t_6*v->ups_q_x - v->ups_M_ta_t_2*v->ups_q_y;
 }
 
@@ -2241,16 +2240,16 @@ INLINE void any_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count,
 INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, real *terms)
 {
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v->ups_Q_t_10);  /* M_tt_xx_of_legs */
-    gather(&terms[1*count + k], add, v->ups_Q_t_12);  /* M_tt_t_2 */
+    gather(&terms[0*count + k], add, v->ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->ups_Q_xy);  /* M_tt_xy */
     gather(&terms[2*count + k], add, v->ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_t */
-    gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_zz */
-    gather(&terms[8*count + k], add, v->ups_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_yy */
+    gather(&terms[7*count + k], add, -v->ups_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[8*count + k], add, -v->ups_M_ta_t);  /* M_ta_xy_of_legs */
     gather(&terms[9*count + k], add, v->ups_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v->ups_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v->ups_M_ta_t_6);  /* M_ta_yz_of_legs */
@@ -2380,18 +2379,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
 {
     /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star - M_tt_xx_of_legs;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
+    const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_zz;
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
     const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z - M_ta_xy_of_legs;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2413,7 +2412,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2445,9 +2444,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real Z_a_z = Z_q_z + Z_a_z_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
     const real M_tt_xz = sums[2*w + k];
     M[2*w + k] = M_tt_xz;
     M[2*NV*w + k] = M_tt_xz;
@@ -2465,8 +2464,8 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2493,17 +2492,20 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     Z[3*w + k] = Z_a_x;
     Z[4*w + k] = Z_a_y;
     Z[5*w + k] = Z_a_z;
-    t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
-        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+    t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+        ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
         (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_ups[26*LEGS(LEGS_OF_ups)] CLEARED, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2513,7 +2515,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2523,7 +2525,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2531,7 +2533,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2564,18 +2566,18 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
 {
     /* (M_tt) translational block of M */
     const real M_tt_xx_of_legs = sums[0*w + k];
-    const real M_tt_xx = m->m_star - M_tt_xx_of_legs;
+    const real M_tt_xx = m->m_star + M_tt_xx_of_legs;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
+    const real M_ta_yy = sums[6*w + k];
     const real M_ta_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_zz;
+    const real M_ta_xx = -M_ta_yy - M_ta_zz;
     const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
-    const real M_ta_xy = h_star_z - M_ta_xy_of_legs;
+    const real M_ta_xy = h_star_z + M_ta_xy_of_legs;
     const real M_ta_xz_of_legs = sums[9*w + k];
     const real h_star_y = s[19*w + k];
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
@@ -2597,7 +2599,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2609,9 +2611,9 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
     /* (M_tt) */
     M[0*w + k] = M_tt_xx;
-    const real M_tt_t_2 = sums[1*w + k];
-    M[1*w + k] = -M_tt_t_2;
-    M[NV*w + k] = -M_tt_t_2;
+    const real M_tt_xy = sums[1*w + k];
+    M[1*w + k] = M_tt_xy;
+    M[NV*w + k] = M_tt_xy;
     const real M_tt_xz = sums[2*w + k];
     M[2*w + k] = M_tt_xz;
     M[2*NV*w + k] = M_tt_xz;
@@ -2629,8 +2631,8 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[5*NV*w + k] = M_ta_xz;
     M[(NV + 3)*w + k] = M_ta_yx;
     M[(3*NV + 1)*w + k] = M_ta_yx;
-    M[(NV + 4)*w + k] = -M_ta_t;
-    M[(4*NV + 1)*w + k] = -M_ta_t;
+    M[(NV + 4)*w + k] = M_ta_yy;
+    M[(4*NV + 1)*w + k] = M_ta_yy;
     M[(NV + 5)*w + k] = M_ta_yz;
     M[(5*NV + 1)*w + k] = M_ta_yz;
     M[(2*NV + 3)*w + k] = M_ta_zx;
@@ -2649,16 +2651,19 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     M[(4*NV + 5)*w + k] = M_aa_yz;
     M[(5*NV + 4)*w + k] = M_aa_yz;
     M[(5*NV + 5)*w + k] = M_aa_zz;
-    t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
-        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+    t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+        M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
         (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_ups[20*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2668,7 +2673,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2677,14 +2682,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2757,10 +2762,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2770,7 +2778,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2780,7 +2788,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2788,7 +2796,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2818,9 +2826,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2836,7 +2846,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2998,11 +3008,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 APART void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -3015,7 +3028,7 @@ APART void required_run(const prepared *m, const real *X, const real *V, const r
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3059,9 +3072,11 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3077,7 +3092,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3123,10 +3138,12 @@ INLINE void joint_rates_place_ups(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3142,7 +3159,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3191,10 +3208,12 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3210,7 +3229,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ups[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3281,10 +3300,12 @@ INLINE void legs_place_ups(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[6*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3371,10 +3392,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -3387,7 +3411,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3468,11 +3492,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3483,7 +3510,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     condition_after(m, 1, 0, sums, lengths, t);

@@ -1829,7 +1829,7 @@ typedef struct {
         ups_qdd_2_t, ups_phi_3_t, ups_mu_2_t_2, ups_mu_2_t_3, ups_mu_2_t_4, ups_c_t, ups_c_t_2,
         ups_S_ddot_in_axes2_x, ups_S_ddot_t, ups_S_ddot_t_2, ups_S_ddot_t_3, ups_S_ddot_in_axes2_z,
         ups_qdd_1, ups_qdd_2_t_2, ups_qdd_2, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2,
-        ups_Z_a_t_3, ups_Q_t_10, ups_Q_yy, ups_Q_zz, ups_Q_t_12, ups_Q_xz, ups_Q_yz, ups_M_ta_t,
+        ups_Z_a_t_3, ups_Q_xx, ups_Q_yy, ups_Q_zz, ups_Q_xy, ups_Q_xz, ups_Q_yz, ups_M_ta_t,
         ups_M_ta_t_2, ups_M_ta_t_3, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_7, ups_M_ta_t_8,
         ups_M_ta_t_9, ups_M_aa_t, ups_M_aa_t_2, ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5,
         ups_M_aa_t_6, ups_S_ddot_in_axes2_y, ups_phi_3_in_axes2_x, ups_c_in_axes2_y, ups_c_in_axes2_z;
@@ -2119,44 +2119,43 @@ INLINE void stage_ups_M_dynamics(const prepared *m, size_t i, values_ups *v)
     /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
     const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-    const real ups_Q_t_3 = v->axis_y_ups_axes2_x*ups_Q_t -
-        v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_4 = v->axis_y_ups_axes2_y*ups_Q_t -
-        v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy +
-        v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-    const real ups_Q_t_5 = v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_axes2_z*ups_Q_t - v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_3 = v->axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_x*ups_Q_t - v->axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_4 = v->axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_axes2_y*ups_Q_t - v->axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+    const real ups_Q_t_5 = v->axis_y_ups_axes2_z*ups_Q_t -
+        v->axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy +
+        v->axis_z_ups_axes2_z*ups_d_c_in_axes2_yz;
     const real ups_Q_t_6 = v->axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_x*ups_Q_t_2;
     const real ups_Q_t_7 = v->axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_y*ups_Q_t_2;
     const real ups_Q_t_8 = v->axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
         v->axis_z_ups_axes2_z*ups_Q_t_2;
-    const real ups_Q_t_9 = v->axis_y_ups_axes2_x*ups_Q_t_3 + v->axis_z_ups_axes2_x*ups_Q_t_6;
-    v->ups_Q_t_10 = 2*ups_Q_t_9;
-    const real ups_Q_t_11 = v->axis_y_ups_axes2_y*ups_Q_t_4 + v->axis_z_ups_axes2_y*ups_Q_t_7;
-    v->ups_Q_yy = -2*ups_Q_t_11;
-    v->ups_Q_zz = v->ups_Q_t_10 - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_yy;
-    v->ups_Q_t_12 = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 +
-        v->axis_z_ups_axes2_x*ups_Q_t_7 + v->axis_z_ups_axes2_y*ups_Q_t_6;
-    v->ups_Q_xz = v->axis_y_ups_axes2_x*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_3 -
+    const real ups_Q_t_9 = v->axis_z_ups_axes2_x*ups_Q_t_6 - v->axis_y_ups_axes2_x*ups_Q_t_3;
+    v->ups_Q_xx = -2*ups_Q_t_9;
+    const real ups_Q_t_10 = v->axis_z_ups_axes2_y*ups_Q_t_7 - v->axis_y_ups_axes2_y*ups_Q_t_4;
+    v->ups_Q_yy = -2*ups_Q_t_10;
+    v->ups_Q_zz = -ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz - v->ups_Q_xx - v->ups_Q_yy;
+    v->ups_Q_xy = v->axis_y_ups_axes2_x*ups_Q_t_4 + v->axis_y_ups_axes2_y*ups_Q_t_3 -
+        v->axis_z_ups_axes2_x*ups_Q_t_7 - v->axis_z_ups_axes2_y*ups_Q_t_6;
+    v->ups_Q_xz = v->axis_y_ups_axes2_z*ups_Q_t_3 - v->axis_y_ups_axes2_x*ups_Q_t_5 -
         v->axis_z_ups_axes2_x*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_6;
-    v->ups_Q_yz = v->axis_y_ups_axes2_y*ups_Q_t_5 - v->axis_y_ups_axes2_z*ups_Q_t_4 -
+    v->ups_Q_yz = v->axis_y_ups_axes2_z*ups_Q_t_4 - v->axis_y_ups_axes2_y*ups_Q_t_5 -
         v->axis_z_ups_axes2_y*ups_Q_t_8 - v->axis_z_ups_axes2_z*ups_Q_t_7;
     /* (M_ta) coupling block of M */
-    v->ups_M_ta_t = v->ups_Q_t_10*v->ups_q_z + v->ups_Q_xz*v->ups_q_x;
-    v->ups_M_ta_t_2 = v->ups_Q_t_10*v->ups_q_y - v->ups_Q_t_12*v->ups_q_x;
+    v->ups_M_ta_t = v->ups_Q_xz*v->ups_q_x - v->ups_Q_xx*v->ups_q_z;
+    v->ups_M_ta_t_2 = v->ups_Q_xy*v->ups_q_x - v->ups_Q_xx*v->ups_q_y;
     v->ups_M_ta_t_3 = v->ups_Q_yz*v->ups_q_y - v->ups_Q_yy*v->ups_q_z;
     const real ups_M_ta_t_4 = v->ups_Q_yz*v->ups_q_x;
-    v->ups_M_ta_t_5 = v->ups_Q_t_12*v->ups_q_z + ups_M_ta_t_4;
-    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x + v->ups_Q_t_12*v->ups_q_y;
+    v->ups_M_ta_t_5 = v->ups_Q_xy*v->ups_q_z - ups_M_ta_t_4;
+    v->ups_M_ta_t_6 = v->ups_Q_yy*v->ups_q_x - v->ups_Q_xy*v->ups_q_y;
     v->ups_M_ta_t_7 = v->ups_Q_zz*v->ups_q_y - v->ups_Q_yz*v->ups_q_z;
     v->ups_M_ta_t_8 = v->ups_Q_xz*v->ups_q_z - v->ups_Q_zz*v->ups_q_x;
     v->ups_M_ta_t_9 = ups_M_ta_t_4 - v->ups_Q_xz*v->ups_q_y;
     /* (M_aa) rotational block of M */
     v->ups_M_aa_t = v->ups_M_ta_t_7*v->ups_q_y - v->ups_M_ta_t_3*v->ups_q_z;
-    v->ups_M_aa_t_2 = v->ups_M_ta_t_5*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_y;
+    v->ups_M_aa_t_2 = v->ups_M_ta_t_8*v->ups_q_y - v->ups_M_ta_t_5*v->ups_q_z;
     v->ups_M_aa_t_3 = v->ups_M_ta_t_9*v->ups_q_y - v->ups_M_ta_t_6*v->ups_q_z;
     v->ups_M_aa_t_4 = v->ups_M_ta_t*v->ups_q_z + v->ups_M_ta_t_8*v->ups_q_x;
     v->ups_M_aa_t_5 = v->ups_M_ta_t_2*v->ups_q_z - v->ups_M_ta_t_9*v->ups_q_x;
@@ -2225,12 +2224,13 @@ typedef struct {
         ups_leg7_mu_2_t_2, ups_leg7_mu_2_t_3, ups_leg7_mu_2_t_4, ups_leg7_c_t, ups_leg7_c_t_2,
         ups_leg7_S_ddot_in_axes2_x, ups_leg7_S_ddot_t, ups_leg7_S_ddot_t_2, ups_leg7_S_ddot_t_3,
         ups_leg7_S_ddot_in_axes2_z, ups_leg7_qdd_1, ups_leg7_qdd_2_t_2, ups_leg7_qdd_2, ups_leg7_U_x,
-        ups_leg7_U_y, ups_leg7_U_z, ups_leg7_Z_a_t, ups_leg7_Z_a_t_2, ups_leg7_Z_a_t_3, ups_leg7_Q_xx,
-        ups_leg7_Q_yy, ups_leg7_Q_zz, ups_leg7_Q_xy, ups_leg7_Q_xz, ups_leg7_Q_yz, ups_leg7_M_ta_t,
-        ups_leg7_M_ta_t_2, ups_leg7_M_ta_t_3, ups_leg7_M_ta_t_5, ups_leg7_M_ta_t_6, ups_leg7_M_ta_t_7,
-        ups_leg7_M_ta_t_8, ups_leg7_M_ta_t_9, ups_leg7_M_aa_t, ups_leg7_M_aa_t_2, ups_leg7_M_aa_t_3,
-        ups_leg7_M_aa_t_4, ups_leg7_M_aa_t_5, ups_leg7_M_aa_t_6, ups_leg7_S_ddot_in_axes2_y,
-        ups_leg7_phi_3_in_axes2_x, ups_leg7_c_in_axes2_y, ups_leg7_c_in_axes2_z;
+        ups_leg7_U_y, ups_leg7_U_z, ups_leg7_Z_a_t, ups_leg7_Z_a_t_2, ups_leg7_Z_a_t_3,
+        ups_leg7_Q_t_10, ups_leg7_Q_yy, ups_leg7_Q_zz, ups_leg7_Q_t_12, ups_leg7_Q_xz, ups_leg7_Q_yz,
+        ups_leg7_M_ta_t, ups_leg7_M_ta_t_2, ups_leg7_M_ta_t_3, ups_leg7_M_ta_t_5, ups_leg7_M_ta_t_6,
+        ups_leg7_M_ta_t_7, ups_leg7_M_ta_t_8, ups_leg7_M_ta_t_9, ups_leg7_M_aa_t, ups_leg7_M_aa_t_2,
+        ups_leg7_M_aa_t_3, ups_leg7_M_aa_t_4, ups_leg7_M_aa_t_5, ups_leg7_M_aa_t_6,
+        ups_leg7_S_ddot_in_axes2_y, ups_leg7_phi_3_in_axes2_x, ups_leg7_c_in_axes2_y,
+        ups_leg7_c_in_axes2_z;
 } values_ups_leg7;
 
 INLINE void stage_ups_leg7_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
@@ -2545,14 +2545,14 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
     /* (ups_leg7-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real ups_leg7_Q_t = R(0.5)*ups_leg7_d_c_in_axes2_yy;
     const real ups_leg7_Q_t_2 = R(0.5)*ups_leg7_d_c_in_axes2_zz;
-    const real ups_leg7_Q_t_3 = v->axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t -
+    const real ups_leg7_Q_t_3 = v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t -
+        v->axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy +
         v->axis_z_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_yz;
-    const real ups_leg7_Q_t_4 = v->axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy -
-        v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
+    const real ups_leg7_Q_t_4 = v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
+        v->axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy +
         v->axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz;
-    const real ups_leg7_Q_t_5 = v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
-        v->axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy +
+    const real ups_leg7_Q_t_5 = v->axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy -
+        v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
         v->axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz;
     const real ups_leg7_Q_t_6 = v->axis_x_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_xz +
         v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_2;
@@ -2560,33 +2560,34 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
         v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_2;
     const real ups_leg7_Q_t_8 = v->axis_x_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_xz +
         v->axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_2;
-    const real ups_leg7_Q_t_9 = v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6 -
-        v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3;
-    v->ups_leg7_Q_xx = -2*ups_leg7_Q_t_9;
-    const real ups_leg7_Q_t_10 = v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7 -
-        v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4;
-    v->ups_leg7_Q_yy = -2*ups_leg7_Q_t_10;
-    v->ups_leg7_Q_zz = -ups_leg7_d_c_in_axes2_yy - ups_leg7_d_c_in_axes2_zz - v->ups_leg7_Q_xx
-        - v->ups_leg7_Q_yy;
-    v->ups_leg7_Q_xy = v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 +
-        v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 - v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7
-        - v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6;
-    v->ups_leg7_Q_xz = v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 -
-        v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 - v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_8
+    const real ups_leg7_Q_t_9 = v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3 +
+        v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6;
+    v->ups_leg7_Q_t_10 = 2*ups_leg7_Q_t_9;
+    const real ups_leg7_Q_t_11 = v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4 +
+        v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7;
+    v->ups_leg7_Q_yy = -2*ups_leg7_Q_t_11;
+    v->ups_leg7_Q_zz = v->ups_leg7_Q_t_10 - ups_leg7_d_c_in_axes2_yy -
+        ups_leg7_d_c_in_axes2_zz - v->ups_leg7_Q_yy;
+    v->ups_leg7_Q_t_12 = v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 +
+        v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 + v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7
+        + v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6;
+    v->ups_leg7_Q_xz = v->axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 -
+        v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 - v->axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_8
         - v->axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_6;
-    v->ups_leg7_Q_yz = v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 -
-        v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 - v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_8
+    v->ups_leg7_Q_yz = v->axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 -
+        v->axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 - v->axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_8
         - v->axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_7;
     /* (M_ta) coupling block of M */
-    v->ups_leg7_M_ta_t = v->ups_leg7_Q_xz*v->ups_leg7_q_x - v->ups_leg7_Q_xx*v->ups_leg7_q_z;
-    v->ups_leg7_M_ta_t_2 = v->ups_leg7_Q_xy*v->ups_leg7_q_x -
-        v->ups_leg7_Q_xx*v->ups_leg7_q_y;
+    v->ups_leg7_M_ta_t = v->ups_leg7_Q_t_10*v->ups_leg7_q_z +
+        v->ups_leg7_Q_xz*v->ups_leg7_q_x;
+    v->ups_leg7_M_ta_t_2 = v->ups_leg7_Q_t_10*v->ups_leg7_q_y -
+        v->ups_leg7_Q_t_12*v->ups_leg7_q_x;
     v->ups_leg7_M_ta_t_3 = v->ups_leg7_Q_yz*v->ups_leg7_q_y -
         v->ups_leg7_Q_yy*v->ups_leg7_q_z;
     const real ups_leg7_M_ta_t_4 = v->ups_leg7_Q_yz*v->ups_leg7_q_x;
-    v->ups_leg7_M_ta_t_5 = v->ups_leg7_Q_xy*v->ups_leg7_q_z - ups_leg7_M_ta_t_4;
-    v->ups_leg7_M_ta_t_6 = v->ups_leg7_Q_yy*v->ups_leg7_q_x -
-        v->ups_leg7_Q_xy*v->ups_leg7_q_y;
+    v->ups_leg7_M_ta_t_5 = v->ups_leg7_Q_t_12*v->ups_leg7_q_z + ups_leg7_M_ta_t_4;
+    v->ups_leg7_M_ta_t_6 = v->ups_leg7_Q_yy*v->ups_leg7_q_x +
+        v->ups_leg7_Q_t_12*v->ups_leg7_q_y;
     v->ups_leg7_M_ta_t_7 = v->ups_leg7_Q_zz*v->ups_leg7_q_y -
         v->ups_leg7_Q_yz*v->ups_leg7_q_z;
     v->ups_leg7_M_ta_t_8 = v->ups_leg7_Q_xz*v->ups_leg7_q_z -
@@ -2595,8 +2596,8 @@ INLINE void stage_ups_leg7_M_dynamics(const prepared *m, size_t i, values_ups_le
     /* (M_aa) rotational block of M */
     v->ups_leg7_M_aa_t = v->ups_leg7_M_ta_t_7*v->ups_leg7_q_y -
         v->ups_leg7_M_ta_t_3*v->ups_leg7_q_z;
-    v->ups_leg7_M_aa_t_2 = v->ups_leg7_M_ta_t_8*v->ups_leg7_q_y -
-        v->ups_leg7_M_ta_t_5*v->ups_leg7_q_z;
+    v->ups_leg7_M_aa_t_2 = v->ups_leg7_M_ta_t_5*v->ups_leg7_q_z +
+        v->ups_leg7_M_ta_t_8*v->ups_leg7_q_y;
     v->ups_leg7_M_aa_t_3 = v->ups_leg7_M_ta_t_9*v->ups_leg7_q_y -
         v->ups_leg7_M_ta_t_6*v->ups_leg7_q_z;
     v->ups_leg7_M_aa_t_4 = v->ups_leg7_M_ta_t*v->ups_leg7_q_z +
@@ -2711,16 +2712,16 @@ INLINE void any_place_ups_leg7(size_t k, size_t at, size_t count, const real *o,
 INLINE void any_sums_ups(size_t k, size_t count, int add, const values_ups *v, real *terms)
 {
     /* (M_tt) translational block of M */
-    gather(&terms[0*count + k], add, v->ups_Q_t_10);  /* M_tt_t */
-    gather(&terms[1*count + k], add, v->ups_Q_t_12);  /* M_tt_t_2 */
+    gather(&terms[0*count + k], add, v->ups_Q_xx);  /* M_tt_xx_of_legs */
+    gather(&terms[1*count + k], add, v->ups_Q_xy);  /* M_tt_xy_of_legs */
     gather(&terms[2*count + k], add, v->ups_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v->ups_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v->ups_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v->ups_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
-    gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_t */
+    gather(&terms[6*count + k], add, v->ups_M_ta_t_5);  /* M_ta_ups_yy */
     gather(&terms[7*count + k], add, v->ups_M_ta_t_9);  /* M_ta_ups_zz */
-    gather(&terms[8*count + k], add, v->ups_M_ta_t);  /* M_ta_t_2 */
+    gather(&terms[8*count + k], add, -v->ups_M_ta_t);  /* M_ta_xy_of_legs */
     gather(&terms[9*count + k], add, v->ups_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v->ups_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v->ups_M_ta_t_6);  /* M_ta_yz_of_legs */
@@ -2870,16 +2871,16 @@ INLINE void dynamics_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t
     stage_ups_leg7_Z_dynamics(m, w, i, j, V, &v);
     stage_ups_leg7_M_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[26*count + k], add, v.ups_leg7_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[27*count + k], add, v.ups_leg7_Q_xy);  /* M_tt_xy_of_legs */
+    gather(&terms[26*count + k], add, v.ups_leg7_Q_t_10);  /* M_tt_t */
+    gather(&terms[27*count + k], add, v.ups_leg7_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_leg7_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_leg7_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_leg7_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_leg7_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[28*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_ups_leg7_yy */
+    gather(&terms[28*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_t */
     gather(&terms[29*count + k], add, v.ups_leg7_M_ta_t_9);  /* M_ta_ups_leg7_zz */
-    gather(&terms[30*count + k], add, -v.ups_leg7_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[30*count + k], add, v.ups_leg7_M_ta_t);  /* M_ta_t_2 */
     gather(&terms[9*count + k], add, v.ups_leg7_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v.ups_leg7_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v.ups_leg7_M_ta_t_6);  /* M_ta_yz_of_legs */
@@ -2900,24 +2901,24 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     real *M, real *Z, status_flags *t)
 {
     /* (M_tt) translational block of M */
-    const real M_tt_t = sums[0*w + k];
-    const real M_tt_xx_of_legs = sums[26*w + k];
+    const real M_tt_t = sums[26*w + k];
+    const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[1*w + k];
-    const real M_tt_xy_of_legs = sums[27*w + k];
+    const real M_tt_t_2 = sums[27*w + k];
+    const real M_tt_xy_of_legs = sums[1*w + k];
     const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
-    const real M_ta_ups_leg7_yy = sums[28*w + k];
+    const real M_ta_t = sums[28*w + k];
     const real M_ta_ups_leg7_zz = sums[29*w + k];
+    const real M_ta_ups_yy = sums[6*w + k];
     const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_yy - M_ta_ups_leg7_zz - M_ta_ups_zz;
-    const real M_ta_t_2 = sums[8*w + k];
-    const real M_ta_xy_of_legs = sums[30*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz;
+    const real M_ta_t_2 = sums[30*w + k];
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs - M_ta_t_2;
     const real M_ta_xz_of_legs = sums[9*w + k];
@@ -2925,7 +2926,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy = M_ta_ups_leg7_yy - M_ta_t;
+    const real M_ta_yy = M_ta_ups_yy - M_ta_t;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
@@ -3028,12 +3029,16 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)31)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[31] CLEARED;
-    real terms_ups[31*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[31*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_dynamics*LEGS(LEGS_OF_ups_leg7)] = {0},
+        o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -3047,13 +3052,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 31; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, t);
     }
-    for (size_t n = 0; n < 31; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
@@ -3065,7 +3070,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[31*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[8*LANES];
     ALIGNED real o_ups_leg7[LANES];
     IN_VECTORS(LANES)
@@ -3074,7 +3079,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 31*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3119,16 +3124,16 @@ INLINE void M_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_t j, siz
     stage_ups_leg7_X(m, w, i, j, s, X, &v);
     stage_ups_leg7_M_dynamics(m, i, &v);
     /* (M_tt) */
-    gather(&terms[20*count + k], add, v.ups_leg7_Q_xx);  /* M_tt_xx_of_legs */
-    gather(&terms[21*count + k], add, v.ups_leg7_Q_xy);  /* M_tt_xy_of_legs */
+    gather(&terms[20*count + k], add, v.ups_leg7_Q_t_10);  /* M_tt_t */
+    gather(&terms[21*count + k], add, v.ups_leg7_Q_t_12);  /* M_tt_t_2 */
     gather(&terms[2*count + k], add, v.ups_leg7_Q_xz);  /* M_tt_xz */
     gather(&terms[3*count + k], add, v.ups_leg7_Q_yy);  /* M_tt_yy_of_legs */
     gather(&terms[4*count + k], add, v.ups_leg7_Q_yz);  /* M_tt_yz */
     gather(&terms[5*count + k], add, v.ups_leg7_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) */
-    gather(&terms[22*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_ups_leg7_yy */
+    gather(&terms[22*count + k], add, v.ups_leg7_M_ta_t_5);  /* M_ta_t */
     gather(&terms[23*count + k], add, v.ups_leg7_M_ta_t_9);  /* M_ta_ups_leg7_zz */
-    gather(&terms[24*count + k], add, -v.ups_leg7_M_ta_t);  /* M_ta_xy_of_legs */
+    gather(&terms[24*count + k], add, v.ups_leg7_M_ta_t);  /* M_ta_t_2 */
     gather(&terms[9*count + k], add, v.ups_leg7_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v.ups_leg7_M_ta_t_3);  /* M_ta_yx_of_legs */
     gather(&terms[11*count + k], add, v.ups_leg7_M_ta_t_6);  /* M_ta_yz_of_legs */
@@ -3148,24 +3153,24 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     *M, status_flags *t)
 {
     /* (M_tt) translational block of M */
-    const real M_tt_t = sums[0*w + k];
-    const real M_tt_xx_of_legs = sums[20*w + k];
+    const real M_tt_t = sums[20*w + k];
+    const real M_tt_xx_of_legs = sums[0*w + k];
     const real M_tt_xx = m->m_star + M_tt_xx_of_legs - M_tt_t;
-    const real M_tt_t_2 = sums[1*w + k];
-    const real M_tt_xy_of_legs = sums[21*w + k];
+    const real M_tt_t_2 = sums[21*w + k];
+    const real M_tt_xy_of_legs = sums[1*w + k];
     const real M_tt_xy = M_tt_xy_of_legs - M_tt_t_2;
     const real M_tt_yy_of_legs = sums[3*w + k];
     const real M_tt_yy = m->m_star + M_tt_yy_of_legs;
     const real M_tt_zz_of_legs = sums[5*w + k];
     const real M_tt_zz = m->m_star + M_tt_zz_of_legs;
     /* (M_ta) coupling block of M */
-    const real M_ta_t = sums[6*w + k];
-    const real M_ta_ups_leg7_yy = sums[22*w + k];
+    const real M_ta_t = sums[22*w + k];
     const real M_ta_ups_leg7_zz = sums[23*w + k];
+    const real M_ta_ups_yy = sums[6*w + k];
     const real M_ta_ups_zz = sums[7*w + k];
-    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_yy - M_ta_ups_leg7_zz - M_ta_ups_zz;
-    const real M_ta_t_2 = sums[8*w + k];
-    const real M_ta_xy_of_legs = sums[24*w + k];
+    const real M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz;
+    const real M_ta_t_2 = sums[24*w + k];
+    const real M_ta_xy_of_legs = sums[8*w + k];
     const real h_star_z = s[20*w + k];
     const real M_ta_xy = h_star_z + M_ta_xy_of_legs - M_ta_t_2;
     const real M_ta_xz_of_legs = sums[9*w + k];
@@ -3173,7 +3178,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
     const real M_ta_yx_of_legs = sums[10*w + k];
     const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
-    const real M_ta_yy = M_ta_ups_leg7_yy - M_ta_t;
+    const real M_ta_yy = M_ta_ups_yy - M_ta_t;
     const real M_ta_yz_of_legs = sums[11*w + k];
     const real h_star_x = s[18*w + k];
     const real M_ta_yz = h_star_x + M_ta_yz_of_legs;
@@ -3248,11 +3253,15 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)25)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[25] CLEARED;
-    real terms_ups[25*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[25*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_M*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)]
+        CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -3266,13 +3275,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 25; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, t);
     }
-    for (size_t n = 0; n < 25; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
@@ -3283,7 +3292,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[25*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
     ALIGNED real o_ups_leg7[LANES];
     IN_VECTORS(LANES)
@@ -3291,7 +3300,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 25*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3385,11 +3394,15 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[6*LEGS(LEGS_OF_ups_leg7)] CLEARED, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_Z*LEGS(LEGS_OF_ups_leg7)] CLEARED, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)]
+        CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -3403,13 +3416,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
@@ -3421,7 +3434,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
     ALIGNED real o_ups_leg7[LANES];
     IN_VECTORS(LANES)
@@ -3430,7 +3443,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3470,9 +3483,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3488,7 +3503,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3685,12 +3700,16 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[6*LEGS(LEGS_OF_ups_leg7)] CLEARED, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] CLEARED, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_required*LEGS(LEGS_OF_ups_leg7)] CLEARED,
+        o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -3710,13 +3729,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
@@ -3728,7 +3747,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[7*LANES];
     ALIGNED real o_ups_leg7[LANES];
     IN_VECTORS(LANES)
@@ -3737,7 +3756,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3839,9 +3858,11 @@ INLINE void inverse_kinematics_place_ups_leg7(size_t w, size_t k, size_t at, siz
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
@@ -3865,7 +3886,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_ups_leg7[5*LANES];
     IN_VECTORS(LANES)
@@ -3948,10 +3969,12 @@ INLINE void joint_rates_place_ups_leg7(size_t w, size_t k, size_t at, size_t cou
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
@@ -3975,7 +3998,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_ups_leg7[5*LANES];
     IN_VECTORS(LANES)
@@ -4065,10 +4088,12 @@ INLINE void joint_accelerations_place_ups_leg7(size_t w, size_t k, size_t at, si
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_ups_leg7[5*LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
@@ -4092,7 +4117,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_ups_leg7[5*LANES];
     IN_VECTORS(LANES)
@@ -4221,10 +4246,12 @@ INLINE void legs_place_ups_leg7(size_t w, size_t k, size_t at, size_t count, con
     t->singular[k] += o[3*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     real o_ups_leg7[4*LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
@@ -4346,21 +4373,22 @@ INLINE void potential_legs_ups_leg7(const prepared *m, size_t w, size_t i, size_
         m->ups_leg7_potential_t_2[i]*ups_leg7_s_1;
     const real ups_leg7_potential_t_8 = ups_leg7_c_1*m->ups_leg7_potential_t_4[i] +
         m->ups_leg7_potential_t_5[i]*ups_leg7_s_1;
-    const real ups_leg7_potential_t_9 = (ups_leg7_c_1*m->ups_leg7_potential_t_2[i] -
+    const real ups_leg7_potential_t_9 = (ups_leg7_potential_t_7*ups_leg7_s_2_t -
+        ups_leg7_c_2_2*m->ups_leg7_potential_t_3[i])*(m->ups_leg7_h_2_in_spec2_z[i] +
+        m->ups_leg7_h_3_in_spec2_z[i] -
+        m->ups_leg7_link2_mass[i]*(ups_leg7_potential_t_8*ups_leg7_s_2_t -
+        ups_leg7_c_2_2*m->ups_leg7_potential_t_6[i])) -
+        (ups_leg7_c_1*m->ups_leg7_potential_t_2[i] -
         m->ups_leg7_potential_t[i]*ups_leg7_s_1)*(m->ups_leg7_h_2_in_spec2_y[i] +
         m->ups_leg7_h_3_in_spec2_y[i] +
         m->ups_leg7_link2_mass[i]*(ups_leg7_c_1*m->ups_leg7_potential_t_5[i] -
-        m->ups_leg7_potential_t_4[i]*ups_leg7_s_1)) + (ups_leg7_c_2_2*ups_leg7_potential_t_7 +
+        m->ups_leg7_potential_t_4[i]*ups_leg7_s_1)) - (ups_leg7_c_2_2*ups_leg7_potential_t_7 +
         m->ups_leg7_potential_t_3[i]*ups_leg7_s_2_t)*(m->ups_leg7_h_2_in_spec2_x[i] +
         m->ups_leg7_h_3_in_spec2_x[i] +
         m->ups_leg7_link2_mass[i]*(ups_leg7_c_2_2*ups_leg7_potential_t_8 +
-        m->ups_leg7_potential_t_6[i]*ups_leg7_s_2_t)) - (ups_leg7_potential_t_7*ups_leg7_s_2_t
-        - ups_leg7_c_2_2*m->ups_leg7_potential_t_3[i])*(m->ups_leg7_h_2_in_spec2_z[i] +
-        m->ups_leg7_h_3_in_spec2_z[i] -
-        m->ups_leg7_link2_mass[i]*(ups_leg7_potential_t_8*ups_leg7_s_2_t -
-        ups_leg7_c_2_2*m->ups_leg7_potential_t_6[i]));
+        m->ups_leg7_potential_t_6[i]*ups_leg7_s_2_t));
     /* (potential) */
-    gather(&terms[0*count + k], add, -ups_leg7_potential_t_9);  /* potential_of_legs */
+    gather(&terms[0*count + k], add, ups_leg7_potential_t_9);  /* potential_of_legs */
     o[0*count + k] = UNLESS(magnitude(ups_leg7_root_1_t_5) > LEAST_1) +
         UNLESS(magnitude(ups_leg7_q_3_t_3) > LEAST_1);
 }
@@ -4375,11 +4403,15 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED, o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_potential*LEGS(LEGS_OF_ups_leg7)] CLEARED,
+        o_ups_leg7[LEGS(LEGS_OF_ups_leg7)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -4399,13 +4431,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         any_place_ups_leg7(0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }
@@ -4525,12 +4557,16 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[2] CLEARED;
-    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_ups_leg7[2*LEGS(LEGS_OF_ups_leg7)] = {0}, o_ups_leg7[3*LEGS(LEGS_OF_ups_leg7)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_ups_leg7[SUMS_OF_condition*LEGS(LEGS_OF_ups_leg7)] = {0},
+        o_ups_leg7[3*LEGS(LEGS_OF_ups_leg7)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -4545,13 +4581,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_ups_leg7; ++i) {
         condition_place_ups_leg7(1, 0, i, LEGS(LEGS_OF_ups_leg7), o_ups_leg7, pivots, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_ups_leg7; ++leg) {
             sums[n] += terms_ups_leg7[n*LEGS(LEGS_OF_ups_leg7) + leg];
         }

@@ -20,6 +20,7 @@ position or keyword; all else is given by keyword.
 """
 
 import math
+import operator
 import warnings
 from itertools import compress
 from numbers import Real
@@ -1178,6 +1179,7 @@ def _prepare(p):
 _FEW, _SOME = 4, 256  # states that are done one after another, and by groups of equal steps
 _BLOCK = 4096  # states that are done together
 _SCRATCH = 31 << 20  # bytes
+_SIZES = {name: math.prod(shape) for name, shape in _SHAPES.items()}
 
 
 def _constants(p, name):
@@ -1196,10 +1198,10 @@ class _Vector(list):
     """A vector, or a matrix row by row, of a single state."""
 
     def __add__(self, other):
-        return _Vector([a + b for a, b in zip(self, other)])
+        return _Vector(map(operator.add, self, other))
 
     def __sub__(self, other):
-        return _Vector([a - b for a, b in zip(self, other)])
+        return _Vector(map(operator.sub, self, other))
 
     def __neg__(self):
         return _Vector([-a for a in self])
@@ -1227,10 +1229,10 @@ class _Floats:
 
     def constants(self, name):
         """Shared values, and (leg, its values) for every leg of each loop."""
-        return _constants(self.p, name)
+        return self.p._cache.get(name) or _constants(self.p, name)
 
     def zeros(self, name):
-        return [0.0] * math.prod(_SHAPES[name])
+        return [0.0] * _SIZES[name]
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
@@ -1281,14 +1283,13 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
     Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
     where a single state needs no arrays.
     """
-    p, read = _given(p), [a[4:] != ("unused",) for a in arguments]
-    lists = plain and _lists(arguments)
+    p, lists = _given(p), plain and _lists(arguments)
     if lists:
-        found = _state(_Single(p, 1), steps, lists, read)
+        found = _state(_Single(p, 1), steps, *lists)
         results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
         return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
-    shapes = [a[2] for a in arguments]
+    shapes, read = [a[2] for a in arguments], [a[4:] != ("unused",) for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
     lead = _lead(leads)
     if plain and 0 < math.prod(lead) <= _FEW:
@@ -1301,35 +1302,40 @@ def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=())
 
 
 def _lists(arguments):
-    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
-    found = []
-    for row in arguments:
-        value, shape = row[1:3]
+    """Arguments of a single state as lists, and those of them that are looked at; None unless all
+    are such arrays as they mostly are."""
+    found, read = [], []
+    for _, value, shape, *more in arguments:
+        rule = more[1:]
         if type(value) is np.ndarray:
-            if value.shape != shape or value.dtype is not _REAL or row[4:] == ("positive",):
+            if value.shape != shape or value.dtype is not _REAL or rule == ["positive"]:
                 return None
-            found.append(_Vector(value.tolist()))
-        elif value is None and len(row) > 3 and row[3] is not None:
-            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+            row = _Vector(value.tolist())
+            if rule != ["unused"]:
+                read.append(row)
+        elif value is None and more and more[0] is not None:
+            row = _Vector(more[0] if isinstance(more[0], tuple) else more[:1] * shape[0])
         else:
             return None
-    return found
+        found.append(row)
+    return found, read
 
 
 def _state(m, steps, given, read):
-    """Lists that the steps give at a state; None where it is impossible."""
+    """Lists that the steps give at a state; None where it is impossible, or what is read not finite."""
     try:
         found = steps(m, *given)
     except (ArithmeticError, ValueError):
         return None
-    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+    return found if _are_finite((*read, *found)) else None
 
 
 def _result(found, shape):
     """The array of a list; of an impossible state, for which its shape is given, NaN."""
     if found is shape:
         return np.full(shape, np.nan)
-    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+    a = np.fromiter(found, _REAL, len(found))
+    return a if len(shape) == 1 else a.reshape(shape)
 
 
 def _few(steps, p, lead, given, shapes, read, plain):
@@ -1339,7 +1345,8 @@ def _few(steps, p, lead, given, shapes, read, plain):
         flat = _at_each(v, lead, shape).reshape(math.prod(lead), -1)
         rows.append(map(_Vector, flat.tolist()))
     impossible = [[np.nan] * math.prod(shape) for shape in plain]
-    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    states = zip(*rows)
+    found = [_state(m, steps, state, compress(state, read)) or impossible for state in states]
     return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
@@ -1821,7 +1828,7 @@ def _times(a, b):
     """Products of matrices (m, n, states) with vectors (n, states)."""
     if isinstance(b, _Vector):
         rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
-        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+        return _Vector([sum(map(operator.mul, row, b)) for row in rows])
     return np.einsum("ijs,js->is", a, b)
 
 
@@ -2250,10 +2257,10 @@ def _run_dynamics(m, X, V):
     Z_q_y = Z_q_t*omega_z + gravity_z*h_star_x - Z_q_t_3*omega_x - gravity_x*h_star_z
     Z_q_z = Z_q_t_2*omega_x + gravity_x*h_star_y - Z_q_t*omega_y - gravity_y*h_star_x
     (
-    M_tt_t, M_tt_t_2, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_t, M_ta_ups_zz,
-        M_ta_t_2, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx,
-        M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x, Z_t_ups_y,
-        Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_yy,
+        M_ta_ups_zz, M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x,
+        Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
     ) = [0.0] * 26
     for leg, k in legs[0]:
         (
@@ -2474,35 +2481,35 @@ def _run_dynamics(m, X, V):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
-        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
-            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
-        ups_Q_yy = -2.0*ups_Q_t_11
-        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
-            + axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_zz = -ups_Q_xx - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
         ups_Q_yz = (
-        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
         # (ups-U) velocity and gravity terms of the leg force
@@ -2519,18 +2526,18 @@ def _run_dynamics(m, X, V):
             axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
-        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t = ups_Q_xz*ups_q_x - ups_Q_xx*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
         ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
         ups_M_ta_t_4 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
-        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_z - ups_M_ta_t_4
+        ups_M_ta_t_6 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
         ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
         ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
         ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
         ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_y - ups_M_ta_t_5*ups_q_z
         ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
         ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
         ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
@@ -2549,16 +2556,16 @@ def _run_dynamics(m, X, V):
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_t += ups_Q_t_10
-        M_tt_t_2 += ups_Q_t_12
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_ups_xy += ups_Q_xy
         M_tt_ups_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_ups_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_t += ups_M_ta_t_5
+        M_ta_ups_yy += ups_M_ta_t_5
         M_ta_ups_zz += ups_M_ta_t_9
-        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xy += -ups_M_ta_t
         M_ta_ups_xz += ups_M_ta_t_2
         M_ta_ups_yx += ups_M_ta_t_3
         M_ta_ups_yz += ups_M_ta_t_6
@@ -2588,12 +2595,11 @@ def _run_dynamics(m, X, V):
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
-    M_tt_ups_leg7_xx, M_tt_ups_leg7_xy, M_tt_ups_leg7_xz, M_tt_ups_leg7_yy, M_tt_ups_leg7_yz,
-        M_tt_ups_leg7_zz, M_ta_ups_leg7_yy, M_ta_ups_leg7_zz, M_ta_ups_leg7_xy, M_ta_ups_leg7_xz,
-        M_ta_ups_leg7_yx, M_ta_ups_leg7_yz, M_ta_ups_leg7_zx, M_ta_ups_leg7_zy, M_aa_ups_leg7_xx,
-        M_aa_ups_leg7_xy, M_aa_ups_leg7_xz, M_aa_t_2, M_aa_ups_leg7_yz, M_aa_ups_leg7_zz,
-        Z_t_ups_leg7_x, Z_t_ups_leg7_y, Z_t_ups_leg7_z, Z_a_ups_leg7_x, Z_a_ups_leg7_y,
-        Z_a_ups_leg7_z,
+    M_tt_t, M_tt_t_2, M_tt_ups_leg7_xz, M_tt_ups_leg7_yy, M_tt_ups_leg7_yz, M_tt_ups_leg7_zz,
+        M_ta_t, M_ta_ups_leg7_zz, M_ta_t_2, M_ta_ups_leg7_xz, M_ta_ups_leg7_yx, M_ta_ups_leg7_yz,
+        M_ta_ups_leg7_zx, M_ta_ups_leg7_zy, M_aa_ups_leg7_xx, M_aa_ups_leg7_xy, M_aa_ups_leg7_xz,
+        M_aa_t_2, M_aa_ups_leg7_yz, M_aa_ups_leg7_zz, Z_t_ups_leg7_x, Z_t_ups_leg7_y,
+        Z_t_ups_leg7_z, Z_a_ups_leg7_x, Z_a_ups_leg7_y, Z_a_ups_leg7_z,
     ) = [0.0] * 26
     for leg, k in legs[1]:
         (
@@ -2847,18 +2853,17 @@ def _run_dynamics(m, X, V):
         ups_leg7_Q_t = 0.5*ups_leg7_d_c_in_axes2_yy
         ups_leg7_Q_t_2 = 0.5*ups_leg7_d_c_in_axes2_zz
         ups_leg7_Q_t_3 = (
-        axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy -
-            axis_y_ups_leg7_axes2_x*ups_leg7_Q_t -
-            axis_z_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_yz
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t + axis_z_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_yz -
+            axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy
         )
         ups_leg7_Q_t_4 = (
-        axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy -
-            axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
-            axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t + axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz -
+            axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy
         )
         ups_leg7_Q_t_5 = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t + axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz -
-            axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy
+        axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy -
+            axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
+            axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz
         )
         ups_leg7_Q_t_6 = (
         axis_x_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_xz + axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_2
@@ -2870,26 +2875,26 @@ def _run_dynamics(m, X, V):
         axis_x_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_xz + axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_2
         )
         ups_leg7_Q_t_9 = (
-        axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6 - axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3 + axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6
         )
-        ups_leg7_Q_xx = -2.0*ups_leg7_Q_t_9
-        ups_leg7_Q_t_10 = (
-        axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7 - axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4
+        ups_leg7_Q_t_10 = 2.0*ups_leg7_Q_t_9
+        ups_leg7_Q_t_11 = (
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4 + axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7
         )
-        ups_leg7_Q_yy = -2.0*ups_leg7_Q_t_10
+        ups_leg7_Q_yy = -2.0*ups_leg7_Q_t_11
         ups_leg7_Q_zz = (
-        -ups_leg7_Q_xx - ups_leg7_Q_yy - ups_leg7_d_c_in_axes2_yy - ups_leg7_d_c_in_axes2_zz
+        ups_leg7_Q_t_10 - ups_leg7_Q_yy - ups_leg7_d_c_in_axes2_yy - ups_leg7_d_c_in_axes2_zz
         )
-        ups_leg7_Q_xy = (
-        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 + axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 -
-            axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7 - axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6
+        ups_leg7_Q_t_12 = (
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 + axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 +
+            axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7 + axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6
         )
         ups_leg7_Q_xz = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 - axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 -
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 - axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 -
             axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_8 - axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_6
         )
         ups_leg7_Q_yz = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 - axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 -
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 - axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 -
             axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_8 - axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_7
         )
         # (ups_leg7-U) velocity and gravity terms of the leg force
@@ -2909,18 +2914,18 @@ def _run_dynamics(m, X, V):
             axis_z_ups_leg7_axes2_z*ups_leg7_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
-        ups_leg7_M_ta_t = ups_leg7_Q_xz*ups_leg7_q_x - ups_leg7_Q_xx*ups_leg7_q_z
-        ups_leg7_M_ta_t_2 = ups_leg7_Q_xy*ups_leg7_q_x - ups_leg7_Q_xx*ups_leg7_q_y
+        ups_leg7_M_ta_t = ups_leg7_Q_t_10*ups_leg7_q_z + ups_leg7_Q_xz*ups_leg7_q_x
+        ups_leg7_M_ta_t_2 = ups_leg7_Q_t_10*ups_leg7_q_y - ups_leg7_Q_t_12*ups_leg7_q_x
         ups_leg7_M_ta_t_3 = ups_leg7_Q_yz*ups_leg7_q_y - ups_leg7_Q_yy*ups_leg7_q_z
         ups_leg7_M_ta_t_4 = ups_leg7_Q_yz*ups_leg7_q_x
-        ups_leg7_M_ta_t_5 = ups_leg7_Q_xy*ups_leg7_q_z - ups_leg7_M_ta_t_4
-        ups_leg7_M_ta_t_6 = ups_leg7_Q_yy*ups_leg7_q_x - ups_leg7_Q_xy*ups_leg7_q_y
+        ups_leg7_M_ta_t_5 = ups_leg7_M_ta_t_4 + ups_leg7_Q_t_12*ups_leg7_q_z
+        ups_leg7_M_ta_t_6 = ups_leg7_Q_t_12*ups_leg7_q_y + ups_leg7_Q_yy*ups_leg7_q_x
         ups_leg7_M_ta_t_7 = ups_leg7_Q_zz*ups_leg7_q_y - ups_leg7_Q_yz*ups_leg7_q_z
         ups_leg7_M_ta_t_8 = ups_leg7_Q_xz*ups_leg7_q_z - ups_leg7_Q_zz*ups_leg7_q_x
         ups_leg7_M_ta_t_9 = ups_leg7_M_ta_t_4 - ups_leg7_Q_xz*ups_leg7_q_y
         # (M_aa) rotational block of M
         ups_leg7_M_aa_t = ups_leg7_M_ta_t_7*ups_leg7_q_y - ups_leg7_M_ta_t_3*ups_leg7_q_z
-        ups_leg7_M_aa_t_2 = ups_leg7_M_ta_t_8*ups_leg7_q_y - ups_leg7_M_ta_t_5*ups_leg7_q_z
+        ups_leg7_M_aa_t_2 = ups_leg7_M_ta_t_5*ups_leg7_q_z + ups_leg7_M_ta_t_8*ups_leg7_q_y
         ups_leg7_M_aa_t_3 = ups_leg7_M_ta_t_9*ups_leg7_q_y - ups_leg7_M_ta_t_6*ups_leg7_q_z
         ups_leg7_M_aa_t_4 = ups_leg7_M_ta_t*ups_leg7_q_z + ups_leg7_M_ta_t_8*ups_leg7_q_x
         ups_leg7_M_aa_t_5 = ups_leg7_M_ta_t_2*ups_leg7_q_z - ups_leg7_M_ta_t_9*ups_leg7_q_x
@@ -2935,16 +2940,16 @@ def _run_dynamics(m, X, V):
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_ups_leg7_xx += ups_leg7_Q_xx
-        M_tt_ups_leg7_xy += ups_leg7_Q_xy
+        M_tt_t += ups_leg7_Q_t_10
+        M_tt_t_2 += ups_leg7_Q_t_12
         M_tt_ups_leg7_xz += ups_leg7_Q_xz
         M_tt_ups_leg7_yy += ups_leg7_Q_yy
         M_tt_ups_leg7_yz += ups_leg7_Q_yz
         M_tt_ups_leg7_zz += ups_leg7_Q_zz
         # (M_ta) coupling block of M
-        M_ta_ups_leg7_yy += ups_leg7_M_ta_t_5
+        M_ta_t += ups_leg7_M_ta_t_5
         M_ta_ups_leg7_zz += ups_leg7_M_ta_t_9
-        M_ta_ups_leg7_xy += -ups_leg7_M_ta_t
+        M_ta_t_2 += ups_leg7_M_ta_t
         M_ta_ups_leg7_xz += ups_leg7_M_ta_t_2
         M_ta_ups_leg7_yx += ups_leg7_M_ta_t_3
         M_ta_ups_leg7_yz += ups_leg7_M_ta_t_6
@@ -2966,18 +2971,18 @@ def _run_dynamics(m, X, V):
         Z_a_ups_leg7_y += ups_leg7_Z_a_t_2
         Z_a_ups_leg7_z += ups_leg7_Z_a_t_3
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_ups_leg7_xx + m_star - M_tt_t
-    M_tt_xy = M_tt_ups_leg7_xy - M_tt_t_2
+    M_tt_xx = M_tt_ups_xx + m_star - M_tt_t
+    M_tt_xy = M_tt_ups_xy - M_tt_t_2
     M_tt_xz = M_tt_ups_leg7_xz + M_tt_ups_xz
     M_tt_yy = M_tt_ups_leg7_yy + M_tt_ups_yy + m_star
     M_tt_yz = M_tt_ups_leg7_yz + M_tt_ups_yz
     M_tt_zz = M_tt_ups_leg7_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_t - M_ta_ups_leg7_yy - M_ta_ups_leg7_zz - M_ta_ups_zz
-    M_ta_xy = M_ta_ups_leg7_xy + h_star_z - M_ta_t_2
+    M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz
+    M_ta_xy = M_ta_ups_xy + h_star_z - M_ta_t_2
     M_ta_xz = M_ta_ups_leg7_xz + M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_ups_leg7_yx + M_ta_ups_yx - h_star_z
-    M_ta_yy = M_ta_ups_leg7_yy - M_ta_t
+    M_ta_yy = M_ta_ups_yy - M_ta_t
     M_ta_yz = M_ta_ups_leg7_yz + M_ta_ups_yz + h_star_x
     M_ta_zx = M_ta_ups_leg7_zx + M_ta_ups_zx + h_star_y
     M_ta_zy = M_ta_ups_leg7_zy + M_ta_ups_zy - h_star_x
@@ -3113,9 +3118,9 @@ def _run_M(m, X):
     J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
     J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     (
-    M_tt_t, M_tt_t_2, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_t, M_ta_ups_zz,
-        M_ta_t_2, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_aa_ups_xx,
-        M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz,
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_yy,
+        M_ta_ups_zz, M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_t, M_aa_ups_yz, M_aa_ups_zz,
     ) = [0.0] * 20
     for leg, k in legs[0]:
         (
@@ -3206,50 +3211,50 @@ def _run_M(m, X):
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
         ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_x*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_y*ups_d_c_in_axes2_yz -
-            axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
-        axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_z*ups_Q_t -
-            axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
         )
         ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
         ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
         ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_y*ups_Q_t_7
-        ups_Q_yy = -2.0*ups_Q_t_11
-        ups_Q_zz = ups_Q_t_10 - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 + axis_z_ups_axes2_x*ups_Q_t_7
-            + axis_z_ups_axes2_y*ups_Q_t_6
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_zz = -ups_Q_xx - ups_Q_yy - ups_d_c_in_axes2_yy - ups_d_c_in_axes2_zz
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
         )
         ups_Q_xz = (
-        axis_y_ups_axes2_x*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_8
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_6
         )
         ups_Q_yz = (
-        axis_y_ups_axes2_y*ups_Q_t_5 - axis_y_ups_axes2_z*ups_Q_t_4 - axis_z_ups_axes2_y*ups_Q_t_8
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
             - axis_z_ups_axes2_z*ups_Q_t_7
         )
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_10*ups_q_z + ups_Q_xz*ups_q_x
-        ups_M_ta_t_2 = ups_Q_t_10*ups_q_y - ups_Q_t_12*ups_q_x
+        ups_M_ta_t = ups_Q_xz*ups_q_x - ups_Q_xx*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
         ups_M_ta_t_3 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
         ups_M_ta_t_4 = ups_Q_yz*ups_q_x
-        ups_M_ta_t_5 = ups_M_ta_t_4 + ups_Q_t_12*ups_q_z
-        ups_M_ta_t_6 = ups_Q_t_12*ups_q_y + ups_Q_yy*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_z - ups_M_ta_t_4
+        ups_M_ta_t_6 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
         ups_M_ta_t_7 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
         ups_M_ta_t_8 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
         ups_M_ta_t_9 = ups_M_ta_t_4 - ups_Q_xz*ups_q_y
         # (M_aa) rotational block of M
         ups_M_aa_t = ups_M_ta_t_7*ups_q_y - ups_M_ta_t_3*ups_q_z
-        ups_M_aa_t_2 = ups_M_ta_t_5*ups_q_z + ups_M_ta_t_8*ups_q_y
+        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_y - ups_M_ta_t_5*ups_q_z
         ups_M_aa_t_3 = ups_M_ta_t_9*ups_q_y - ups_M_ta_t_6*ups_q_z
         ups_M_aa_t_4 = ups_M_ta_t*ups_q_z + ups_M_ta_t_8*ups_q_x
         ups_M_aa_t_5 = ups_M_ta_t_2*ups_q_z - ups_M_ta_t_9*ups_q_x
@@ -3260,16 +3265,16 @@ def _run_M(m, X):
             _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_t += ups_Q_t_10
-        M_tt_t_2 += ups_Q_t_12
+        M_tt_ups_xx += ups_Q_xx
+        M_tt_ups_xy += ups_Q_xy
         M_tt_ups_xz += ups_Q_xz
         M_tt_ups_yy += ups_Q_yy
         M_tt_ups_yz += ups_Q_yz
         M_tt_ups_zz += ups_Q_zz
         # (M_ta) coupling block of M
-        M_ta_t += ups_M_ta_t_5
+        M_ta_ups_yy += ups_M_ta_t_5
         M_ta_ups_zz += ups_M_ta_t_9
-        M_ta_t_2 += ups_M_ta_t
+        M_ta_ups_xy += -ups_M_ta_t
         M_ta_ups_xz += ups_M_ta_t_2
         M_ta_ups_yx += ups_M_ta_t_3
         M_ta_ups_yz += ups_M_ta_t_6
@@ -3283,10 +3288,10 @@ def _run_M(m, X):
         M_aa_ups_yz += ups_M_aa_t_5
         M_aa_ups_zz += ups_M_aa_t_6
     (
-    M_tt_ups_leg7_xx, M_tt_ups_leg7_xy, M_tt_ups_leg7_xz, M_tt_ups_leg7_yy, M_tt_ups_leg7_yz,
-        M_tt_ups_leg7_zz, M_ta_ups_leg7_yy, M_ta_ups_leg7_zz, M_ta_ups_leg7_xy, M_ta_ups_leg7_xz,
-        M_ta_ups_leg7_yx, M_ta_ups_leg7_yz, M_ta_ups_leg7_zx, M_ta_ups_leg7_zy, M_aa_ups_leg7_xx,
-        M_aa_ups_leg7_xy, M_aa_ups_leg7_xz, M_aa_t_2, M_aa_ups_leg7_yz, M_aa_ups_leg7_zz,
+    M_tt_t, M_tt_t_2, M_tt_ups_leg7_xz, M_tt_ups_leg7_yy, M_tt_ups_leg7_yz, M_tt_ups_leg7_zz,
+        M_ta_t, M_ta_ups_leg7_zz, M_ta_t_2, M_ta_ups_leg7_xz, M_ta_ups_leg7_yx, M_ta_ups_leg7_yz,
+        M_ta_ups_leg7_zx, M_ta_ups_leg7_zy, M_aa_ups_leg7_xx, M_aa_ups_leg7_xy, M_aa_ups_leg7_xz,
+        M_aa_t_2, M_aa_ups_leg7_yz, M_aa_ups_leg7_zz,
     ) = [0.0] * 20
     for leg, k in legs[1]:
         (
@@ -3393,18 +3398,17 @@ def _run_M(m, X):
         ups_leg7_Q_t = 0.5*ups_leg7_d_c_in_axes2_yy
         ups_leg7_Q_t_2 = 0.5*ups_leg7_d_c_in_axes2_zz
         ups_leg7_Q_t_3 = (
-        axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy -
-            axis_y_ups_leg7_axes2_x*ups_leg7_Q_t -
-            axis_z_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_yz
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t + axis_z_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_yz -
+            axis_x_ups_leg7_axes2_x*ups_leg7_d_phi_3_in_axes2_xy
         )
         ups_leg7_Q_t_4 = (
-        axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy -
-            axis_y_ups_leg7_axes2_y*ups_leg7_Q_t -
-            axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t + axis_z_ups_leg7_axes2_y*ups_leg7_d_c_in_axes2_yz -
+            axis_x_ups_leg7_axes2_y*ups_leg7_d_phi_3_in_axes2_xy
         )
         ups_leg7_Q_t_5 = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t + axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz -
-            axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy
+        axis_x_ups_leg7_axes2_z*ups_leg7_d_phi_3_in_axes2_xy -
+            axis_y_ups_leg7_axes2_z*ups_leg7_Q_t -
+            axis_z_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_yz
         )
         ups_leg7_Q_t_6 = (
         axis_x_ups_leg7_axes2_x*ups_leg7_d_c_in_axes2_xz + axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_2
@@ -3416,41 +3420,41 @@ def _run_M(m, X):
         axis_x_ups_leg7_axes2_z*ups_leg7_d_c_in_axes2_xz + axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_2
         )
         ups_leg7_Q_t_9 = (
-        axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6 - axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_3 + axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_6
         )
-        ups_leg7_Q_xx = -2.0*ups_leg7_Q_t_9
-        ups_leg7_Q_t_10 = (
-        axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7 - axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4
+        ups_leg7_Q_t_10 = 2.0*ups_leg7_Q_t_9
+        ups_leg7_Q_t_11 = (
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_4 + axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_7
         )
-        ups_leg7_Q_yy = -2.0*ups_leg7_Q_t_10
+        ups_leg7_Q_yy = -2.0*ups_leg7_Q_t_11
         ups_leg7_Q_zz = (
-        -ups_leg7_Q_xx - ups_leg7_Q_yy - ups_leg7_d_c_in_axes2_yy - ups_leg7_d_c_in_axes2_zz
+        ups_leg7_Q_t_10 - ups_leg7_Q_yy - ups_leg7_d_c_in_axes2_yy - ups_leg7_d_c_in_axes2_zz
         )
-        ups_leg7_Q_xy = (
-        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 + axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 -
-            axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7 - axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6
+        ups_leg7_Q_t_12 = (
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_4 + axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_3 +
+            axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_7 + axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_6
         )
         ups_leg7_Q_xz = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 - axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 -
+        axis_y_ups_leg7_axes2_x*ups_leg7_Q_t_5 - axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_3 -
             axis_z_ups_leg7_axes2_x*ups_leg7_Q_t_8 - axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_6
         )
         ups_leg7_Q_yz = (
-        axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 - axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 -
+        axis_y_ups_leg7_axes2_y*ups_leg7_Q_t_5 - axis_y_ups_leg7_axes2_z*ups_leg7_Q_t_4 -
             axis_z_ups_leg7_axes2_y*ups_leg7_Q_t_8 - axis_z_ups_leg7_axes2_z*ups_leg7_Q_t_7
         )
         # (M_ta) coupling block of M
-        ups_leg7_M_ta_t = ups_leg7_Q_xz*ups_leg7_q_x - ups_leg7_Q_xx*ups_leg7_q_z
-        ups_leg7_M_ta_t_2 = ups_leg7_Q_xy*ups_leg7_q_x - ups_leg7_Q_xx*ups_leg7_q_y
+        ups_leg7_M_ta_t = ups_leg7_Q_t_10*ups_leg7_q_z + ups_leg7_Q_xz*ups_leg7_q_x
+        ups_leg7_M_ta_t_2 = ups_leg7_Q_t_10*ups_leg7_q_y - ups_leg7_Q_t_12*ups_leg7_q_x
         ups_leg7_M_ta_t_3 = ups_leg7_Q_yz*ups_leg7_q_y - ups_leg7_Q_yy*ups_leg7_q_z
         ups_leg7_M_ta_t_4 = ups_leg7_Q_yz*ups_leg7_q_x
-        ups_leg7_M_ta_t_5 = ups_leg7_Q_xy*ups_leg7_q_z - ups_leg7_M_ta_t_4
-        ups_leg7_M_ta_t_6 = ups_leg7_Q_yy*ups_leg7_q_x - ups_leg7_Q_xy*ups_leg7_q_y
+        ups_leg7_M_ta_t_5 = ups_leg7_M_ta_t_4 + ups_leg7_Q_t_12*ups_leg7_q_z
+        ups_leg7_M_ta_t_6 = ups_leg7_Q_t_12*ups_leg7_q_y + ups_leg7_Q_yy*ups_leg7_q_x
         ups_leg7_M_ta_t_7 = ups_leg7_Q_zz*ups_leg7_q_y - ups_leg7_Q_yz*ups_leg7_q_z
         ups_leg7_M_ta_t_8 = ups_leg7_Q_xz*ups_leg7_q_z - ups_leg7_Q_zz*ups_leg7_q_x
         ups_leg7_M_ta_t_9 = ups_leg7_M_ta_t_4 - ups_leg7_Q_xz*ups_leg7_q_y
         # (M_aa) rotational block of M
         ups_leg7_M_aa_t = ups_leg7_M_ta_t_7*ups_leg7_q_y - ups_leg7_M_ta_t_3*ups_leg7_q_z
-        ups_leg7_M_aa_t_2 = ups_leg7_M_ta_t_8*ups_leg7_q_y - ups_leg7_M_ta_t_5*ups_leg7_q_z
+        ups_leg7_M_aa_t_2 = ups_leg7_M_ta_t_5*ups_leg7_q_z + ups_leg7_M_ta_t_8*ups_leg7_q_y
         ups_leg7_M_aa_t_3 = ups_leg7_M_ta_t_9*ups_leg7_q_y - ups_leg7_M_ta_t_6*ups_leg7_q_z
         ups_leg7_M_aa_t_4 = ups_leg7_M_ta_t*ups_leg7_q_z + ups_leg7_M_ta_t_8*ups_leg7_q_x
         ups_leg7_M_aa_t_5 = ups_leg7_M_ta_t_2*ups_leg7_q_z - ups_leg7_M_ta_t_9*ups_leg7_q_x
@@ -3461,16 +3465,16 @@ def _run_M(m, X):
             (abs(ups_leg7_root_1) > _TOLERANCE * 0.8) & (abs(ups_leg7_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
-        M_tt_ups_leg7_xx += ups_leg7_Q_xx
-        M_tt_ups_leg7_xy += ups_leg7_Q_xy
+        M_tt_t += ups_leg7_Q_t_10
+        M_tt_t_2 += ups_leg7_Q_t_12
         M_tt_ups_leg7_xz += ups_leg7_Q_xz
         M_tt_ups_leg7_yy += ups_leg7_Q_yy
         M_tt_ups_leg7_yz += ups_leg7_Q_yz
         M_tt_ups_leg7_zz += ups_leg7_Q_zz
         # (M_ta) coupling block of M
-        M_ta_ups_leg7_yy += ups_leg7_M_ta_t_5
+        M_ta_t += ups_leg7_M_ta_t_5
         M_ta_ups_leg7_zz += ups_leg7_M_ta_t_9
-        M_ta_ups_leg7_xy += -ups_leg7_M_ta_t
+        M_ta_t_2 += ups_leg7_M_ta_t
         M_ta_ups_leg7_xz += ups_leg7_M_ta_t_2
         M_ta_ups_leg7_yx += ups_leg7_M_ta_t_3
         M_ta_ups_leg7_yz += ups_leg7_M_ta_t_6
@@ -3484,18 +3488,18 @@ def _run_M(m, X):
         M_aa_ups_leg7_yz += ups_leg7_M_aa_t_5
         M_aa_ups_leg7_zz += ups_leg7_M_aa_t_6
     # (M_tt) translational block of M
-    M_tt_xx = M_tt_ups_leg7_xx + m_star - M_tt_t
-    M_tt_xy = M_tt_ups_leg7_xy - M_tt_t_2
+    M_tt_xx = M_tt_ups_xx + m_star - M_tt_t
+    M_tt_xy = M_tt_ups_xy - M_tt_t_2
     M_tt_xz = M_tt_ups_leg7_xz + M_tt_ups_xz
     M_tt_yy = M_tt_ups_leg7_yy + M_tt_ups_yy + m_star
     M_tt_yz = M_tt_ups_leg7_yz + M_tt_ups_yz
     M_tt_zz = M_tt_ups_leg7_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = M_ta_t - M_ta_ups_leg7_yy - M_ta_ups_leg7_zz - M_ta_ups_zz
-    M_ta_xy = M_ta_ups_leg7_xy + h_star_z - M_ta_t_2
+    M_ta_xx = M_ta_t - M_ta_ups_leg7_zz - M_ta_ups_yy - M_ta_ups_zz
+    M_ta_xy = M_ta_ups_xy + h_star_z - M_ta_t_2
     M_ta_xz = M_ta_ups_leg7_xz + M_ta_ups_xz - h_star_y
     M_ta_yx = M_ta_ups_leg7_yx + M_ta_ups_yx - h_star_z
-    M_ta_yy = M_ta_ups_leg7_yy - M_ta_t
+    M_ta_yy = M_ta_ups_yy - M_ta_t
     M_ta_yz = M_ta_ups_leg7_yz + M_ta_ups_yz + h_star_x
     M_ta_zx = M_ta_ups_leg7_zx + M_ta_ups_zx + h_star_y
     M_ta_zy = M_ta_ups_leg7_zy + M_ta_ups_zy - h_star_x
@@ -6451,23 +6455,23 @@ def _run_potential(m, X):
         ups_leg7_c_1*ups_leg7_potential_t_4 + ups_leg7_potential_t_5*ups_leg7_s_1
         )
         ups_leg7_potential_t_9 = (
-        (ups_leg7_c_1*ups_leg7_potential_t_2 -
-            ups_leg7_potential_t*ups_leg7_s_1)*(ups_leg7_h_2_in_spec2_y + ups_leg7_h_3_in_spec2_y
-            + ups_leg7_link2_mass*(ups_leg7_c_1*ups_leg7_potential_t_5 -
-            ups_leg7_potential_t_4*ups_leg7_s_1)) + (ups_leg7_c_2_2*ups_leg7_potential_t_7 +
-            ups_leg7_potential_t_3*ups_leg7_s_2_t)*(ups_leg7_h_2_in_spec2_x +
-            ups_leg7_h_3_in_spec2_x + ups_leg7_link2_mass*(ups_leg7_c_2_2*ups_leg7_potential_t_8 +
-            ups_leg7_potential_t_6*ups_leg7_s_2_t)) - (ups_leg7_potential_t_7*ups_leg7_s_2_t -
+        (ups_leg7_potential_t_7*ups_leg7_s_2_t -
             ups_leg7_c_2_2*ups_leg7_potential_t_3)*(ups_leg7_h_2_in_spec2_z +
             ups_leg7_h_3_in_spec2_z - ups_leg7_link2_mass*(ups_leg7_potential_t_8*ups_leg7_s_2_t -
-            ups_leg7_c_2_2*ups_leg7_potential_t_6))
+            ups_leg7_c_2_2*ups_leg7_potential_t_6)) - (ups_leg7_c_1*ups_leg7_potential_t_2 -
+            ups_leg7_potential_t*ups_leg7_s_1)*(ups_leg7_h_2_in_spec2_y + ups_leg7_h_3_in_spec2_y
+            + ups_leg7_link2_mass*(ups_leg7_c_1*ups_leg7_potential_t_5 -
+            ups_leg7_potential_t_4*ups_leg7_s_1)) - (ups_leg7_c_2_2*ups_leg7_potential_t_7 +
+            ups_leg7_potential_t_3*ups_leg7_s_2_t)*(ups_leg7_h_2_in_spec2_x +
+            ups_leg7_h_3_in_spec2_x + ups_leg7_link2_mass*(ups_leg7_c_2_2*ups_leg7_potential_t_8 +
+            ups_leg7_potential_t_6*ups_leg7_s_2_t))
         )
         ok = (
         ok & (abs(ups_leg7_root_1_t_5) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_leg7_q_3_t_3) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
-        potential_ups_leg7 += -ups_leg7_potential_t_9
+        potential_ups_leg7 += ups_leg7_potential_t_9
     # (potential) potential energy
     potential = potential_ups + potential_ups_leg7 - potential_t
     # (potential) potential energy

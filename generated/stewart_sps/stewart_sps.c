@@ -2072,13 +2072,13 @@ INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
     v->sps_M_ta_t_6 = v->sps_Q_yy*v->sps_q_x - v->sps_Q_xy*v->sps_q_y;
     v->sps_M_ta_t_7 = v->sps_Q_zz*v->sps_q_y - v->sps_Q_yz*v->sps_q_z;
     v->sps_M_ta_t_8 = v->sps_Q_xz*v->sps_q_z - v->sps_Q_zz*v->sps_q_x;
-    v->sps_M_ta_t_9 = sps_M_ta_t_4 - v->sps_Q_xz*v->sps_q_y;
+    v->sps_M_ta_t_9 = v->sps_Q_xz*v->sps_q_y - sps_M_ta_t_4;
     /* (M_aa) rotational block of M */
     v->sps_M_aa_t = v->sps_M_ta_t_7*v->sps_q_y - v->sps_M_ta_t_3*v->sps_q_z;
     v->sps_M_aa_t_2 = v->sps_M_ta_t_8*v->sps_q_y - v->sps_M_ta_t_5*v->sps_q_z;
-    v->sps_M_aa_t_3 = v->sps_M_ta_t_9*v->sps_q_y - v->sps_M_ta_t_6*v->sps_q_z;
+    v->sps_M_aa_t_3 = v->sps_M_ta_t_6*v->sps_q_z + v->sps_M_ta_t_9*v->sps_q_y;
     v->sps_M_aa_t_4 = v->sps_M_ta_t*v->sps_q_z + v->sps_M_ta_t_8*v->sps_q_x;
-    v->sps_M_aa_t_5 = v->sps_M_ta_t_2*v->sps_q_z - v->sps_M_ta_t_9*v->sps_q_x;
+    v->sps_M_aa_t_5 = v->sps_M_ta_t_2*v->sps_q_z + v->sps_M_ta_t_9*v->sps_q_x;
     v->sps_M_aa_t_6 = v->sps_M_ta_t_6*v->sps_q_x - v->sps_M_ta_t_2*v->sps_q_y;
     /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
     v->sps_M_ya_3_x = v->sps_d_P_3_z*v->sps_q_y - v->sps_d_P_3_y*v->sps_q_z;
@@ -2280,7 +2280,7 @@ INLINE void any_sums_sps(size_t k, size_t count, int add, const values_sps *v, r
     gather(&terms[5*count + k], add, v->sps_Q_zz);  /* M_tt_zz_of_legs */
     /* (M_ta) coupling block of M */
     gather(&terms[6*count + k], add, v->sps_M_ta_t_5);  /* M_ta_yy */
-    gather(&terms[7*count + k], add, v->sps_M_ta_t_9);  /* M_ta_zz */
+    gather(&terms[7*count + k], add, -v->sps_M_ta_t_9);  /* M_ta_zz */
     gather(&terms[8*count + k], add, -v->sps_M_ta_t);  /* M_ta_xy_of_legs */
     gather(&terms[9*count + k], add, v->sps_M_ta_t_2);  /* M_ta_xz_of_legs */
     gather(&terms[10*count + k], add, v->sps_M_ta_t_3);  /* M_ta_yx_of_legs */
@@ -2495,7 +2495,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2581,11 +2581,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_sps[26*LEGS(LEGS_OF_sps)] CLEARED, o_sps[22*LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_sps[SUMS_OF_dynamics*LEGS(LEGS_OF_sps)] CLEARED, o_sps[22*LEGS(LEGS_OF_sps)] CLEARED;
     clear(M, NV*NV);
     clear(H, NV*NU);
     values v;
@@ -2597,7 +2600,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         dynamics_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, M, Z, H, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2607,7 +2610,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_sps[22*LANES];
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
@@ -2617,7 +2620,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2708,7 +2711,7 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
     const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
     const real J_star_xz = s[25*w + k];
     const real M_aa_xz_of_legs = sums[16*w + k];
-    const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
+    const real M_aa_xz = J_star_xz - M_aa_xz_of_legs;
     const real J_star_yy = s[22*w + k];
     const real M_aa_yy_of_legs = sums[17*w + k];
     const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
@@ -2766,10 +2769,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_sps[20*LEGS(LEGS_OF_sps)] CLEARED, o_sps[15*LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_sps[SUMS_OF_M*LEGS(LEGS_OF_sps)] CLEARED, o_sps[15*LEGS(LEGS_OF_sps)] CLEARED;
     clear(M, NV*NV);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
@@ -2780,7 +2786,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         M_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, M, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2789,7 +2795,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
     IN_VECTORS(LANES)
@@ -2797,7 +2803,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2882,10 +2888,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_sps[6*LEGS(LEGS_OF_sps)] CLEARED, o_sps[3*LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_sps[SUMS_OF_Z*LEGS(LEGS_OF_sps)] CLEARED, o_sps[3*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_sps))
@@ -2895,7 +2904,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         Z_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, Z, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2905,7 +2914,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_sps[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2913,7 +2922,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2956,9 +2965,11 @@ INLINE void H_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_sps[8*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     values v;
@@ -2975,7 +2986,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     IN_VECTORS(LANES)
@@ -3143,11 +3154,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_sps[6*LEGS(LEGS_OF_sps)] CLEARED, o_sps[8*LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_sps[SUMS_OF_required*LEGS(LEGS_OF_sps)] CLEARED, o_sps[8*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3161,7 +3175,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         required_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, required, H, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3171,7 +3185,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     IN_VECTORS(LANES)
@@ -3180,7 +3194,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3233,9 +3247,11 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3251,7 +3267,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_sps[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3304,10 +3320,12 @@ INLINE void joint_rates_place_sps(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3323,7 +3341,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_sps[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3379,10 +3397,12 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[5*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_sps[6*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3398,7 +3418,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_sps[6*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3471,10 +3491,12 @@ INLINE void legs_place_sps(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[6*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_sps[7*LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3551,10 +3573,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_sps[LEGS(LEGS_OF_sps)] CLEARED, o_sps[LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_sps[SUMS_OF_potential*LEGS(LEGS_OF_sps)] CLEARED, o_sps[LEGS(LEGS_OF_sps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_sps); i += BESIDE(LEGS_OF_sps)) {
@@ -3567,7 +3592,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         potential_place_sps(0, i, LEGS(LEGS_OF_sps), o_sps, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3649,11 +3674,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_sps[LEGS(LEGS_OF_sps)] CLEARED, o_sps[9*LEGS(LEGS_OF_sps)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_sps[SUMS_OF_condition*LEGS(LEGS_OF_sps)] CLEARED, o_sps[9*LEGS(LEGS_OF_sps)] CLEARED;
     clear(H, NV*NU);
     clear(reach, NL);
     values v;
@@ -3665,7 +3693,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_sps; ++i) {
         condition_place_sps(1, i, 0, i, LEGS(LEGS_OF_sps), o_sps, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_sps + n*LEGS(LEGS_OF_sps), LEGS_OF_sps);
     }
     condition_after(m, 1, 0, sums, lengths, t);

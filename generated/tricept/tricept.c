@@ -3810,12 +3810,15 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)33)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] CLEARED, sums[33] CLEARED;
-    real terms_ups[33*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[33*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_dynamics*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
     any_before(m, 1, 0, X, &v, s, t);
@@ -3830,13 +3833,13 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 33; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         dynamics_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 33; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -3849,7 +3852,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[33*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[8*LANES];
     ALIGNED real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
@@ -3859,7 +3862,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 33*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4039,11 +4042,14 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)27)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[27] CLEARED;
-    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_M*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -4057,13 +4063,13 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -4074,7 +4080,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[27*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
     ALIGNED real o_tube[LANES];
     IN_VECTORS(LANES)
@@ -4082,7 +4088,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, stat
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 27*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4176,11 +4182,14 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[6*LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_Z*LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -4194,13 +4203,13 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -4212,7 +4221,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
     ALIGNED real o_tube[LANES];
     IN_VECTORS(LANES)
@@ -4221,7 +4230,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4261,9 +4270,11 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t i, size_t j, size_t k
         (v.ups_H_a_3_x + (v.ups_H_a_3_y + v.ups_H_a_3_z));
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_ups[8*LEGS(LEGS_OF_ups)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -4279,7 +4290,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_ups[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -4335,9 +4346,11 @@ INLINE void Hk_place_tube(size_t w, size_t k, size_t at, size_t count, const rea
     t->total[k] += o[16*count + at];
 }
 
+#define PASSED_IN_Hk ((size_t)18)
+
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_Hk] CLEARED;
     real o_tube[17*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
@@ -4354,7 +4367,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_Hk*LANES];
     ALIGNED real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
     IN_VECTORS(LANES)
@@ -4405,10 +4418,12 @@ INLINE void constraint_bias_place_tube(size_t w, size_t k, size_t at, size_t cou
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_constraint_bias ((size_t)18)
+
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraint_bias] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -4424,7 +4439,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraint_bias*LANES];
     ALIGNED real o_tube[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -4636,12 +4651,15 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)9)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] CLEARED, sums[9] CLEARED;
-    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[9*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_required*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] CLEARED;
     clear(Hk, NV*NC);
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -4662,13 +4680,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         required_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -4680,7 +4698,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[9*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[7*LANES];
     ALIGNED real o_tube[16*LANES];
     clear(Hk, NV*NC*LANES);
@@ -4690,7 +4708,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -4784,9 +4802,11 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t k, size_t at, size_t 
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
@@ -4810,7 +4830,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_tube[5*LANES];
     IN_VECTORS(LANES)
@@ -4893,10 +4913,12 @@ INLINE void joint_rates_place_tube(size_t w, size_t k, size_t at, size_t count, 
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
@@ -4920,7 +4942,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_tube[5*LANES];
     IN_VECTORS(LANES)
@@ -5011,10 +5033,12 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t k, size_t at, size_t
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
@@ -5038,7 +5062,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_ups[5*LANES];
     ALIGNED real o_tube[5*LANES];
     IN_VECTORS(LANES)
@@ -5103,9 +5127,11 @@ INLINE void constraints_place_tube(size_t w, size_t k, size_t at, size_t count, 
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_constraints ((size_t)18)
+
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraints] CLEARED;
     real o_tube[5*LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -5121,7 +5147,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraints*LANES];
     ALIGNED real o_tube[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -5260,10 +5286,12 @@ INLINE void legs_place_tube(size_t w, size_t k, size_t at, size_t count, const r
     t->singular[k] += o[21*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_ups[7*LEGS(LEGS_OF_ups)] CLEARED;
     real o_tube[22*LEGS(LEGS_OF_tube)] CLEARED;
     clear(leg_force, 6*NL);
@@ -5391,11 +5419,14 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_potential*LEGS(LEGS_OF_tube)] CLEARED, o_tube[LEGS(LEGS_OF_tube)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
@@ -5415,13 +5446,13 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_tube), o_tube, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }
@@ -5565,12 +5596,16 @@ INLINE void condition_after(size_t w, size_t k, const real *sums, real *lengths,
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)2)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[2] CLEARED;
-    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
-    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] CLEARED;
+    real terms_tube[SUMS_OF_condition*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)]
+        CLEARED;
     clear(Hk, NV*NC);
     clear(reach, NL);
     values v;
@@ -5586,13 +5621,13 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     for (size_t i = 0; i < LEGS_OF_tube; ++i) {
         condition_place_tube(1, 0, i, LEGS(LEGS_OF_tube), o_tube, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 2; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
             sums[n] += terms_tube[n*LEGS(LEGS_OF_tube) + leg];
         }

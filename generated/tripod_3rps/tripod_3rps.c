@@ -2225,11 +2225,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)26)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] CLEARED, sums[26] CLEARED;
-    real terms_rps[26*LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_rps[SUMS_OF_dynamics*LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rps))
@@ -2239,7 +2242,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         dynamics_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 26; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2250,7 +2253,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[26*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_rps[15*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2258,7 +2261,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 26*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2383,10 +2386,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)20)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[20] CLEARED;
-    real terms_rps[20*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_rps[SUMS_OF_M*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rps))
@@ -2396,7 +2402,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         any_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
-    for (size_t n = 0; n < 20; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2405,14 +2411,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[20*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_rps[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 20*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2486,10 +2492,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rps[6*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_rps[SUMS_OF_Z*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_rps))
@@ -2499,7 +2508,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         any_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2509,7 +2518,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_rps[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2517,7 +2526,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2560,9 +2569,11 @@ INLINE void H_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_rps[8*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2578,7 +2589,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_rps[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2620,9 +2631,11 @@ INLINE void Hk_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count, 
     t->total[k] += o[6*count + at];
 }
 
+#define PASSED_IN_Hk ((size_t)18)
+
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_Hk] CLEARED;
     real o_rps[7*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2638,7 +2651,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_Hk*LANES];
     ALIGNED real o_rps[7*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2680,10 +2693,12 @@ INLINE void constraint_bias_place_rps(size_t w, size_t i, size_t k, size_t at, s
     t->total[k] += o[1*count + at];
 }
 
+#define PASSED_IN_constraint_bias ((size_t)18)
+
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraint_bias] CLEARED;
     real o_rps[2*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2699,7 +2714,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraint_bias*LANES];
     ALIGNED real o_rps[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2861,11 +2876,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_rps[6*LEGS(LEGS_OF_rps)] CLEARED, o_rps[13*LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_rps[SUMS_OF_required*LEGS(LEGS_OF_rps)] CLEARED, o_rps[13*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rps); i += BESIDE(LEGS_OF_rps)) {
@@ -2878,7 +2896,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         required_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -2888,7 +2906,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_rps[13*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2896,7 +2914,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2938,9 +2956,11 @@ INLINE void inverse_kinematics_place_rps(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2956,7 +2976,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_rps[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3000,10 +3020,12 @@ INLINE void joint_rates_place_rps(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3019,7 +3041,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_rps[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3066,10 +3088,12 @@ INLINE void joint_accelerations_place_rps(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[3*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_rps[4*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3085,7 +3109,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_rps[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3125,9 +3149,11 @@ INLINE void constraints_place_rps(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[1*count + at];
 }
 
+#define PASSED_IN_constraints ((size_t)18)
+
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraints] CLEARED;
     real o_rps[2*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3143,7 +3169,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraints*LANES];
     ALIGNED real o_rps[2*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3203,10 +3229,12 @@ INLINE void legs_place_rps(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[9*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_rps[10*LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3266,10 +3294,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_rps[LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_rps[SUMS_OF_potential*LEGS(LEGS_OF_rps)] CLEARED, o_rps[LEGS(LEGS_OF_rps)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_rps); i += BESIDE(LEGS_OF_rps)) {
@@ -3282,7 +3313,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         any_place_rps(0, i, LEGS(LEGS_OF_rps), o_rps, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3371,11 +3402,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_rps[LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_rps[SUMS_OF_condition*LEGS(LEGS_OF_rps)] CLEARED, o_rps[15*LEGS(LEGS_OF_rps)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3386,7 +3420,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     for (size_t i = 0; i < LEGS_OF_rps; ++i) {
         condition_place_rps(1, i, 0, i, LEGS(LEGS_OF_rps), o_rps, H, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_rps + n*LEGS(LEGS_OF_rps), LEGS_OF_rps);
     }
     condition_after(m, 1, 0, sums, lengths, t);

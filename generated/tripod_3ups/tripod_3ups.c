@@ -1618,11 +1618,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *su
         + (Z_t_y + Z_t_z)));
 }
 
+#define SUMS_OF_dynamics ((size_t)9)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, status_flags *t)
 {
-    real sums[9] CLEARED;
-    real terms_ups[9*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
+    real sums[SUMS_OF_dynamics] CLEARED;
+    real terms_ups[SUMS_OF_dynamics*LEGS(LEGS_OF_ups)] CLEARED, o_ups[5*LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         dynamics_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
@@ -1630,7 +1632,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 9; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     dynamics_after(m, 1, 0, sums, M, Z, t);
@@ -1639,9 +1641,9 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
 APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *restrict M,
     real *restrict Z, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real sums[9*LANES];
+    ALIGNED real sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_ups[5*LANES];
-    clear(sums, 9*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1695,10 +1697,12 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
 }
 
+#define SUMS_OF_M ((size_t)6)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real sums[6] CLEARED;
-    real terms_ups[6*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real sums[SUMS_OF_M] CLEARED;
+    real terms_ups[SUMS_OF_M*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         M_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
@@ -1706,7 +1710,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     M_after(m, 1, 0, sums, M, t);
@@ -1715,9 +1719,9 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real sums[6*LANES];
+    ALIGNED real sums[SUMS_OF_M*LANES];
     ALIGNED real o_ups[LANES];
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1763,10 +1767,12 @@ INLINE void Z_after(const prepared *m, size_t w, size_t k, const real *sums, rea
     t->total[k] += Z_t_x + (Z_t_y + Z_t_z);
 }
 
+#define SUMS_OF_Z ((size_t)3)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real sums[3] CLEARED;
-    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real sums[SUMS_OF_Z] CLEARED;
+    real terms_ups[SUMS_OF_Z*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     IN_VECTORS(LEGS(LEGS_OF_ups))
     for (size_t k = 0; k < LEGS(LEGS_OF_ups); ++k) {
         Z_legs_ups(m, 1, k, 0, k, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
@@ -1774,7 +1780,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     Z_after(m, 1, 0, sums, Z, t);
@@ -1783,9 +1789,9 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real sums[3*LANES];
+    ALIGNED real sums[SUMS_OF_Z*LANES];
     ALIGNED real o_ups[LANES];
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -1913,11 +1919,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[2*w + k] = R_t_z;
 }
 
+#define PASSED_IN_required ((size_t)3)
+#define SUMS_OF_required ((size_t)3)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, status_flags *t)
 {
-    real s[3] CLEARED, sums[3] CLEARED;
-    real terms_ups[3*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_ups[SUMS_OF_required*LEGS(LEGS_OF_ups)] CLEARED, o_ups[4*LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
         IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
@@ -1928,7 +1937,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         required_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, t);
     }
-    for (size_t n = 0; n < 3; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     required_between(m, 1, 0, A, s);
@@ -1938,13 +1947,13 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, status_flags *restrict t)
 {
-    ALIGNED real s[3*LANES], sums[3*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_ups[4*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         required_between(m, LANES, k, A, s);
     }
-    clear(sums, 3*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2281,10 +2290,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)1)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[1] CLEARED, sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_ups[SUMS_OF_potential*LEGS(LEGS_OF_ups)] CLEARED, o_ups[LEGS(LEGS_OF_ups)] CLEARED;
     for (size_t i = 0; i < LEGS(LEGS_OF_ups); i += BESIDE(LEGS_OF_ups)) {
         IN_VECTORS(BESIDE(LEGS_OF_ups))
         for (size_t k = 0; k < BESIDE(LEGS_OF_ups); ++k) {
@@ -2294,7 +2306,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         any_place_ups_2(0, i, LEGS(LEGS_OF_ups), o_ups, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     potential_between(m, 1, 0, X, s);
@@ -2361,11 +2373,13 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, status_flags *t)
 {
-    real sums[1] CLEARED;
-    real terms_ups[LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
+    real sums[SUMS_OF_condition] CLEARED;
+    real terms_ups[SUMS_OF_condition*LEGS(LEGS_OF_ups)] CLEARED, o_ups[6*LEGS(LEGS_OF_ups)] CLEARED;
     clear(reach, NL);
     condition_before(m, 1, 0, lengths, t);
     IN_VECTORS(LEGS(LEGS_OF_ups))
@@ -2375,7 +2389,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *length
     for (size_t i = 0; i < LEGS_OF_ups; ++i) {
         condition_place_ups(1, i, 0, i, LEGS(LEGS_OF_ups), o_ups, H, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
     condition_after(m, 1, 0, sums, lengths, t);

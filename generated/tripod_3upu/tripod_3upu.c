@@ -2564,11 +2564,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, size_t k, const real *s,
         ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
 }
 
+#define PASSED_IN_dynamics ((size_t)33)
+#define SUMS_OF_dynamics ((size_t)27)
+
 APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, status_flags *t)
 {
-    real s[33] CLEARED, sums[27] CLEARED;
-    real terms_upu[27*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_dynamics] CLEARED, sums[SUMS_OF_dynamics] CLEARED;
+    real terms_upu[SUMS_OF_dynamics*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_upu))
@@ -2578,7 +2581,7 @@ APART void dynamics_run(const prepared *m, const real *X, const real *V, real *M
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         dynamics_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, constraint_bias, t);
     }
-    for (size_t n = 0; n < 27; ++n) {
+    for (size_t n = 0; n < SUMS_OF_dynamics; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     dynamics_between(m, 1, 0, V, &v, s);
@@ -2589,7 +2592,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
     real *restrict Z, real *restrict H, real *restrict Hk, real *restrict constraint_bias,
     status_flags *restrict t)
 {
-    ALIGNED real s[33*LANES], sums[27*LANES];
+    ALIGNED real s[PASSED_IN_dynamics*LANES], sums[SUMS_OF_dynamics*LANES];
     ALIGNED real o_upu[15*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2597,7 +2600,7 @@ APART void dynamics_run_lanes(const prepared *m, const real *X, const real *V, r
         any_before(m, LANES, k, X, &v, s, t);
         dynamics_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 27*LANES);
+    clear(sums, SUMS_OF_dynamics*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2721,10 +2724,13 @@ INLINE void M_after(const prepared *m, size_t w, size_t k, const real *s, const 
         M_aa_zz))));
 }
 
+#define PASSED_IN_M ((size_t)27)
+#define SUMS_OF_M ((size_t)21)
+
 APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 {
-    real s[27] CLEARED, sums[21] CLEARED;
-    real terms_upu[21*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_M] CLEARED, sums[SUMS_OF_M] CLEARED;
+    real terms_upu[SUMS_OF_M*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_upu))
@@ -2734,7 +2740,7 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
-    for (size_t n = 0; n < 21; ++n) {
+    for (size_t n = 0; n < SUMS_OF_M; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     M_after(m, 1, 0, s, sums, M, t);
@@ -2743,14 +2749,14 @@ APART void M_run(const prepared *m, const real *X, real *M, status_flags *t)
 INLINE void M_run_lanes(const prepared *m, const real *X, real *restrict M, status_flags *restrict
     t)
 {
-    ALIGNED real s[27*LANES], sums[21*LANES];
+    ALIGNED real s[PASSED_IN_M*LANES], sums[SUMS_OF_M*LANES];
     ALIGNED real o_upu[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
         values v;
         any_before(m, LANES, k, X, &v, s, t);
     }
-    clear(sums, 21*LANES);
+    clear(sums, SUMS_OF_M*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2823,10 +2829,13 @@ INLINE void Z_after(size_t w, size_t k, const real *s, const real *sums, real *Z
     t->total[k] += (Z_t_x + (Z_t_y + Z_t_z)) + (Z_a_x + (Z_a_y + Z_a_z));
 }
 
+#define PASSED_IN_Z ((size_t)24)
+#define SUMS_OF_Z ((size_t)6)
+
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_upu[6*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_Z] CLEARED, sums[SUMS_OF_Z] CLEARED;
+    real terms_upu[SUMS_OF_Z*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     IN_VECTORS(LEGS(LEGS_OF_upu))
@@ -2836,7 +2845,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_Z; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     Z_between(m, 1, 0, V, &v, s);
@@ -2846,7 +2855,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, stat
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *restrict Z,
     status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_Z*LANES], sums[SUMS_OF_Z*LANES];
     ALIGNED real o_upu[LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2854,7 +2863,7 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *r
         any_before_2(m, LANES, k, X, &v, s, t);
         Z_between(m, LANES, k, V, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_Z*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -2896,9 +2905,11 @@ INLINE void H_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, c
     t->total[k] += o[7*count + at];
 }
 
+#define PASSED_IN_H ((size_t)18)
+
 APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_H] CLEARED;
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2914,7 +2925,7 @@ APART void H_run(const prepared *m, const real *X, real *H, status_flags *t)
 INLINE void H_run_lanes(const prepared *m, const real *X, real *restrict H, status_flags *restrict
     t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_H*LANES];
     ALIGNED real o_upu[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -2958,9 +2969,11 @@ INLINE void Hk_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count, 
     t->total[k] += o[7*count + at];
 }
 
+#define PASSED_IN_Hk ((size_t)18)
+
 APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_Hk] CLEARED;
     real o_upu[8*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -2976,7 +2989,7 @@ APART void Hk_run(const prepared *m, const real *X, real *Hk, status_flags *t)
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *restrict Hk, status_flags
     *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_Hk*LANES];
     ALIGNED real o_upu[8*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3016,10 +3029,12 @@ INLINE void constraint_bias_place_upu(size_t w, size_t i, size_t k, size_t at, s
     t->total[k] += o[2*count + at];
 }
 
+#define PASSED_IN_constraint_bias ((size_t)18)
+
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraint_bias] CLEARED;
     real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3035,7 +3050,7 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *restrict constraint_bias, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraint_bias*LANES];
     ALIGNED real o_upu[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3196,11 +3211,14 @@ INLINE void required_after(size_t w, size_t k, const real *s, const real *sums, 
     required[5*w + k] = R_a_z;
 }
 
+#define PASSED_IN_required ((size_t)24)
+#define SUMS_OF_required ((size_t)6)
+
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, status_flags *t)
 {
-    real s[24] CLEARED, sums[6] CLEARED;
-    real terms_upu[6*LEGS(LEGS_OF_upu)] CLEARED, o_upu[13*LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_required] CLEARED, sums[SUMS_OF_required] CLEARED;
+    real terms_upu[SUMS_OF_required*LEGS(LEGS_OF_upu)] CLEARED, o_upu[13*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
@@ -3213,7 +3231,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         required_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, t);
     }
-    for (size_t n = 0; n < 6; ++n) {
+    for (size_t n = 0; n < SUMS_OF_required; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     required_between(m, 1, 0, V, A, &v, s);
@@ -3223,7 +3241,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *restrict required, real *restrict H, real *restrict Hk, status_flags *restrict t)
 {
-    ALIGNED real s[24*LANES], sums[6*LANES];
+    ALIGNED real s[PASSED_IN_required*LANES], sums[SUMS_OF_required*LANES];
     ALIGNED real o_upu[13*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3231,7 +3249,7 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         any_before_3(m, LANES, k, X, V, A, &v, s, t);
         required_between(m, LANES, k, V, A, &v, s);
     }
-    clear(sums, 6*LANES);
+    clear(sums, SUMS_OF_required*LANES);
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         IN_VECTORS(LANES)
         for (size_t k = 0; k < LANES; ++k) {
@@ -3279,9 +3297,11 @@ INLINE void inverse_kinematics_place_upu(size_t w, size_t i, size_t k, size_t at
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_inverse_kinematics ((size_t)18)
+
 APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_inverse_kinematics] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3297,7 +3317,7 @@ APART void inverse_kinematics_run(const prepared *m, const real *X, real *q, sta
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *restrict q,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_inverse_kinematics*LANES];
     ALIGNED real o_upu[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3343,10 +3363,12 @@ INLINE void joint_rates_place_upu(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_rates ((size_t)18)
+
 APART void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, status_flags
     *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_rates] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3362,7 +3384,7 @@ APART void joint_rates_run(const prepared *m, const real *X, const real *V, real
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *restrict
     qd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_rates*LANES];
     ALIGNED real o_upu[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3411,10 +3433,12 @@ INLINE void joint_accelerations_place_upu(size_t w, size_t i, size_t k, size_t a
     t->total[k] += o[4*count + at];
 }
 
+#define PASSED_IN_joint_accelerations ((size_t)18)
+
 APART void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real *A,
     real *qdd, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_joint_accelerations] CLEARED;
     real o_upu[5*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_3(m, 1, 0, X, V, A, &v, s, t);
@@ -3430,7 +3454,7 @@ APART void joint_accelerations_run(const prepared *m, const real *X, const real 
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *restrict qdd, status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_joint_accelerations*LANES];
     ALIGNED real o_upu[5*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3469,9 +3493,11 @@ INLINE void constraints_place_upu(size_t w, size_t i, size_t k, size_t at, size_
     t->total[k] += o[2*count + at];
 }
 
+#define PASSED_IN_constraints ((size_t)18)
+
 APART void constraints_run(const prepared *m, const real *X, real *constraints, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_constraints] CLEARED;
     real o_upu[3*LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
@@ -3487,7 +3513,7 @@ APART void constraints_run(const prepared *m, const real *X, real *constraints, 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *restrict constraints,
     status_flags *restrict t)
 {
-    ALIGNED real s[18*LANES];
+    ALIGNED real s[PASSED_IN_constraints*LANES];
     ALIGNED real o_upu[3*LANES];
     IN_VECTORS(LANES)
     for (size_t k = 0; k < LANES; ++k) {
@@ -3553,10 +3579,12 @@ INLINE void legs_place_upu(size_t w, size_t i, size_t k, size_t at, size_t count
     t->singular[k] += o[12*count + at];
 }
 
+#define PASSED_IN_legs ((size_t)18)
+
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, status_flags *t)
 {
-    real s[18] CLEARED;
+    real s[PASSED_IN_legs] CLEARED;
     real o_upu[13*LEGS(LEGS_OF_upu)] CLEARED;
     clear(leg_force, 6*NL);
     clear(actuator, 18);
@@ -3624,10 +3652,13 @@ INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums,
     potential[0*w + k] = potential_;
 }
 
+#define PASSED_IN_potential ((size_t)19)
+#define SUMS_OF_potential ((size_t)1)
+
 INLINE void potential_run(const prepared *m, const real *X, real *potential, status_flags *t)
 {
-    real s[19] CLEARED, sums[1] CLEARED;
-    real terms_upu[LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_potential] CLEARED, sums[SUMS_OF_potential] CLEARED;
+    real terms_upu[SUMS_OF_potential*LEGS(LEGS_OF_upu)] CLEARED, o_upu[LEGS(LEGS_OF_upu)] CLEARED;
     values v;
     any_before_2(m, 1, 0, X, &v, s, t);
     for (size_t i = 0; i < LEGS(LEGS_OF_upu); i += BESIDE(LEGS_OF_upu)) {
@@ -3640,7 +3671,7 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, sta
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         any_place_upu(0, i, LEGS(LEGS_OF_upu), o_upu, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_potential; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     potential_between(m, 1, 0, X, &v, s);
@@ -3732,11 +3763,14 @@ INLINE void condition_after(const prepared *m, size_t w, size_t k, const real *s
     t->total[k] += spread_;
 }
 
+#define PASSED_IN_condition ((size_t)18)
+#define SUMS_OF_condition ((size_t)1)
+
 APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, status_flags *t)
 {
-    real s[18] CLEARED, sums[1] CLEARED;
-    real terms_upu[LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
+    real s[PASSED_IN_condition] CLEARED, sums[SUMS_OF_condition] CLEARED;
+    real terms_upu[SUMS_OF_condition*LEGS(LEGS_OF_upu)] CLEARED, o_upu[15*LEGS(LEGS_OF_upu)] CLEARED;
     clear(reach, NL);
     values v;
     condition_before(m, 1, 0, X, &v, s, lengths, t);
@@ -3747,7 +3781,7 @@ APART void condition_run(const prepared *m, const real *X, real *H, real *Hk, re
     for (size_t i = 0; i < LEGS_OF_upu; ++i) {
         condition_place_upu(1, i, 0, i, LEGS(LEGS_OF_upu), o_upu, H, Hk, pivots, t);
     }
-    for (size_t n = 0; n < 1; ++n) {
+    for (size_t n = 0; n < SUMS_OF_condition; ++n) {
         sums[n] = total(terms_upu + n*LEGS(LEGS_OF_upu), LEGS_OF_upu);
     }
     condition_after(m, 1, 0, sums, lengths, t);
