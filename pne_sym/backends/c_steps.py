@@ -35,6 +35,7 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.scalar import wrap
+from pne_sym.backends.steps import Citations
 from pne_sym.backends.templating import render
 from pne_sym.program import interpret
 from pne_sym.program.public import (
@@ -94,9 +95,10 @@ class Steps:
     def routine(self) -> Routine:
         """Outputs, state by state, and codes of w states from inputs, state by state."""
         lines = [f"start({self.w}, &why);", *self._inputs(), *self._begun()]
+        cited = Citations(self.bundle.program, "/* {} */")
         for step in self.steps:
-            lines += self._step(step)
-        lines += self._outputs()
+            lines += cited.lines(step, self._step(step))
+        lines += [*cited.end(), *self._outputs()]
         if self.work[0]:
             self.buffers.append(self._buffer("work", self.work[1]))
         aligned = "ALIGNED " * self.lanes
