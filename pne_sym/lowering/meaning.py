@@ -13,12 +13,12 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation
+from pne_sym.derivation import Derivation, Law
 from pne_sym.lowering import algebra
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.margins import OWN_NAMES
 from pne_sym.lowering.statements import Statement, of_leg
-from pne_sym.program.ir import Component
+from pne_sym.program.ir import Component, Kind
 
 Signed = tuple[int, Component]
 
@@ -35,6 +35,7 @@ class Meaning:
         self._id = {e.name: e.id for e in equations}
         self._quantity = {e.id: e.name for e in equations}
         self._order = {e.id: k for k, e in enumerate(equations)}
+        self._constant = {e.name for e in equations if e.law is Law.LUMPING}
         self._frames = {f.name: k for k, f in enumerate(derivation.frames)}
         self._signed: dict[Any, dict[Signed, None]] = {}
         self._turned: set[Any] = set()
@@ -162,7 +163,7 @@ class Meaning:
             own = s.hint.removeprefix(f"{s.stage.leg_type}_") in OWN_NAMES
             hint = of.name if of else s.hint if own else ""
             found.append(s._replace(equation=equation, hint=hint))
-            self._note(needed, s.expr, equation)
+            self._note(needed, s.expr, need if self._is_turned(s, part) else equation)
         return self.sorted(found[::-1])
 
     def sorted(self, statements: Sequence[Statement]) -> list[Statement]:
@@ -190,6 +191,11 @@ class Meaning:
         """Whether the derivation defines a quantity no later than in an equation."""
         equation = self._id.get(component.quantity, "")
         return not equation or self.order(equation) <= self.order(need)
+
+    def _is_turned(self, statement: Statement, part: Component | None) -> bool:
+        """Whether it is what is constant in a link, in other axes: these are known later."""
+        constant = part is not None and part.quantity in self._constant
+        return constant and statement.stage.kind is Kind.STATE_LEG
 
     def _note(self, needed: dict[Any, str], expr: Any, equation: str) -> None:
         for symbol in algebra.symbols(sp.sympify(expr)):

@@ -12,6 +12,7 @@ import sympy as sp
 
 from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
+from pne_sym.derivation import Law
 from pne_sym.program.ir import Block, Program
 from pne_sym.review.evaluation import Structure
 from pne_sym.review.named import Statement, first_contradiction, statements
@@ -59,6 +60,17 @@ def test_a_name_is_of_what_it_means_or_says_that_it_is_a_part(name: str) -> None
                 continue
             part = rf"(\w+_)?({quantity[equation]}_t(_\d+)?|inv_\w+|least_\w+|pivot\w*)"
             assert re.fullmatch(part, target), (target, equation)
+
+
+@pytest.mark.parametrize("name", sampled(manipulators.names(), 99, keep=["delta"]))
+def test_a_constant_turned_needs_nothing_as_early_as_it_is_defined(name: str) -> None:
+    """J_3 in axes of link 1 takes angles, and S before them: these keep their own names and ids."""
+    of = bundle(catalogue(name))
+    constant = {e.id for e in of.derivation.equations() if e.law is Law.LUMPING}
+    for f in of.program.functions.values():
+        for target, equation in _targets(f.blocks):
+            first = f.means.get(target, ())[:1]
+            assert equation not in constant or not first or first[0].name in target, target
 
 
 def _scopes(program: Program) -> list[tuple[tuple[Block, ...], Any]]:
