@@ -64,6 +64,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701
+        optimized=False,  # each template is rendered once or twice: no constants worth folding
     )
     made.globals["limits"] = LIMITS
     made.globals["fixed"] = FIXED
