@@ -102,26 +102,14 @@ class CBackend:
 
 def _view(bundle: Bundle) -> CView:
     """What the templates print."""
-    run = _run(bundle)
-    stages = Stages(run.values())
-    once, functions = _texts(bundle, run, stages)
-    closures = tuple(
-        CClosure(
-            closure,
-            bundle.program.shapes[f"residual_{(leg := closure.leg_type)}"][1],
-            functions[closure.function].one.call_with(
-                {"joints": "q", f"residual_{leg}": "residual", f"jacobian_{leg}": "jacobian"}
-            ),
-        )
-        for closure in bundle.program.closures
-    )
+    functions, shared = _texts(bundle)
+    closures = _closures(bundle, functions)
     steps, routines = _steps(bundle, functions)
     users = [Caller(bundle.name, f, *routines[f.of.name]) for f in c_functions(bundle)]
-    closing = {closure.function for closure in bundle.program.closures}
+    closing = {closure.of.function for closure in closures}
     texts = [
         "/* ---- what functions of the state share; v: values for others ---- */",
-        *stage_texts(bundle, stages),
-        *once.texts(),
+        *shared,
         *(f.text for n, f in functions.items() if n in closing),
         *([_closing(bundle, closures)] if closures else []),
         "/* ---- functions of the state: M, Z, H and the like ---- */",
@@ -184,6 +172,17 @@ def _coordinate_lines(d: Described) -> tuple[str, ...]:
     return tuple(line for name, text in named for line in wrapped(f"{name}: {text}", "    "))
 
 
+def _closures(bundle: Bundle, functions: dict[str, FunctionText]) -> tuple[CClosure, ...]:
+    """Legs whose displacements are found by iteration."""
+    found = []
+    for closure in bundle.program.closures:
+        residual = f"residual_{closure.leg_type}"
+        arrays = {residual: "residual", f"jacobian_{closure.leg_type}": "jacobian"}
+        call = functions[closure.function].one.call_with({"joints": "q", **arrays})
+        found.append(CClosure(closure, bundle.program.shapes[residual][1], call))
+    return tuple(found)
+
+
 def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
     """The iterations on the loop closure."""
     return render(
@@ -204,11 +203,10 @@ def _run(bundle: Bundle) -> dict[str, Function]:
     return {n: with_common_sums(f) for n, f in program.functions.items() if n in run}
 
 
-def _texts(
-    bundle: Bundle, functions: dict[str, Function], stages: Stages
-) -> tuple[Once, dict[str, FunctionText]]:
-    """Functions of the program; for states side by side where a public one wants it."""
-    program = bundle.program
+def _texts(bundle: Bundle) -> tuple[dict[str, FunctionText], list[str]]:
+    """Functions of the program, for states side by side where a public one wants it; the shared."""
+    program, functions = bundle.program, _run(bundle)
+    stages = Stages(functions.values())
     printed = [f for f in program.public if any(o.value.size for o in f.outputs)]
     single = Counter(name for f in printed for name in f.functions)
     lanes = Counter(name for f in printed if runs_in_lanes(f) for name in f.functions)
@@ -217,7 +215,8 @@ def _texts(
         FunctionWriter(bundle, f, stages, summed=name in summed) for name, f in functions.items()
     ]
     once = Once(routine for writer in writers for routine in writer.routines())
-    return once, {w.name: w.text(once, single[w.name], lanes[w.name]) for w in writers}
+    texts = {w.name: w.text(once, single[w.name], lanes[w.name]) for w in writers}
+    return texts, [*stage_texts(bundle, stages), *once.texts()]
 
 
 def _steps(

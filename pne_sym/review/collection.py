@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pne_sym.generation import InputError
+from pne_sym.review.diff_text import in_full
 from pne_sym.review.manifests import manifest_of
 from pne_sym.review.markdown import Part
 from pne_sym.review.sources import Source, same_bytes
@@ -99,13 +100,8 @@ def as_text(before: Source, after: Source, parts: list[Part]) -> Iterator[str]:
         yield f"equal: {', '.join(equal)}"
     for part in (p for p in parts if not p.is_equal):
         yield ""
-        yield f"{part.name}: {part.headline}"
-        yield from (part.measured,) if part.measured else ()
-        for section in part.sections:
-            yield ""
-            yield section.title
-            yield from section.lines
-        yield from (f"note: {note}" for note in part.notes)
+        headline = f"{part.name}: {part.headline}"
+        yield from in_full(headline, part.measured, part.sections, part.notes)
 
 
 def as_json(before: Source, after: Source, parts: list[Part]) -> str:

@@ -6,7 +6,7 @@ First the specification, then equations, values, effects; rewritings and counts 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from pne_sym.review.difference import (
@@ -53,15 +53,18 @@ def as_text(found: Comparison) -> Iterator[str]:
     """Lines of plain text."""
     yield f"--- {found.before}"
     yield f"+++ {found.after}"
-    yield verdict(found)
-    if (told := measured(found)) != "":
-        yield told
-    for section in sections(found):
-        yield ""
-        yield section.title
-        yield from section.lines
-    for note in found.notes:
-        yield f"note: {note}"
+    yield from in_full(verdict(found), measured(found), sections(found), found.notes)
+
+
+def in_full(
+    headline: str, measured: str, sections: Iterable[Section], notes: Iterable[str]
+) -> Iterator[str]:
+    """Lines of plain text on one model."""
+    yield headline
+    yield from (measured,) if measured else ()
+    for section in sections:
+        yield from ("", section.title, *section.lines)
+    yield from (f"note: {note}" for note in notes)
 
 
 def sections(found: Comparison) -> list[Section]:

@@ -303,10 +303,7 @@ class Comparison:
             "equations": [_plain(e) for e in listed],
             "effects": [_plain(e) for e in self.effects],
             "interface": [_plain(c) for c in self.interface],
-            "operations": [
-                {"function": o.function, "before": list(o.before), "after": list(o.after)}
-                for o in self.operations
-            ],
+            "operations": [_plain(o) for o in self.operations],
             "notes": list(self.notes),
             "files": [_plain(f) for f in self.files],
             "identical_files": self.identical_files,

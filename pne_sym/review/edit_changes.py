@@ -59,7 +59,8 @@ def _range(values: Sequence[float]) -> str:
     return least if least == largest else f"{least} to {largest}"
 
 
-def _kind(old: Any, new: Any) -> str:
+def kind(old: Any, new: Any) -> str:
+    """Whether an entry is added, removed or changed; None where there is none."""
     return "added" if old is None else "removed" if new is None else "changed"
 
 
@@ -83,8 +84,8 @@ def _change(key: str, old: Any, new: Any) -> str:
     if all(_is_short(v) for v in (old, new)):
         return f"{name} {plain(old)} -> {plain(new)}"
     if isinstance(old or new, Mapping) and isinstance((old or new).get("mass"), int | float):
-        return f"{name} {_kind(old, new)} (mass {(old or new)['mass']:g} kg)"
-    return f"{name} {_kind(old, new)}"
+        return f"{name} {kind(old, new)} (mass {(old or new)['mass']:g} kg)"
+    return f"{name} {kind(old, new)}"
 
 
 def _is_short(value: Any) -> bool:
@@ -115,7 +116,7 @@ def plain(value: Any, *, quoted: bool = False) -> str:
 def _symbols(old: Any, new: Any) -> str:
     known = list(dict.fromkeys((*(old or ()), *(new or ()))))
     more = f" and {len(known) - _SHORT} more" if len(known) > _SHORT else ""
-    return f"symbols of {', '.join(known[:_SHORT])}{more} {_kind(old, new)}"
+    return f"symbols of {', '.join(known[:_SHORT])}{more} {kind(old, new)}"
 
 
 def _moved(old: Any, new: Any) -> str:
@@ -201,7 +202,7 @@ def _turned(old: Any, new: Any) -> str:
     a, b = vector(old), vector(new)
     if a is None or b is None:
         if not all(isinstance(v, list) for v in (old, new)):
-            return _kind(old, new)
+            return kind(old, new)
         return " -> ".join(", ".join(map(axis_words, v)) for v in (old, new))
     if max(abs(x + y) for x, y in zip(a, b, strict=True)) < 1e-9:
         return "flipped"
@@ -211,7 +212,7 @@ def _turned(old: Any, new: Any) -> str:
 def _shifted(old: Any, new: Any) -> str:
     a, b = (vector(v) if v is not None else (0.0, 0.0, 0.0) for v in (old, new))
     if a is None or b is None:
-        return _kind(old, new)
+        return kind(old, new)
     step = [y - x for x, y in zip(a, b, strict=True)]
     if not any(a):
         return f"set to {_length(math.hypot(*b))} from zero"
@@ -226,7 +227,7 @@ def _shifted(old: Any, new: Any) -> str:
 def _rotated(old: Any, new: Any) -> str:
     a, b = matrix(old), matrix(new)
     if a is None or b is None:
-        return _kind(old, new)
+        return kind(old, new)
     step = math.hypot(
         *(y - x for r, s in zip(a, b, strict=True) for x, y in zip(r, s, strict=True))
     )
@@ -236,7 +237,7 @@ def _rotated(old: Any, new: Any) -> str:
 def _inertia(old: Any, new: Any) -> str:
     a, b = tensor(old), tensor(new)
     if a is None or b is None:
-        return _kind(old, new)
+        return kind(old, new)
     products = [any(t[i][j] for i, j in ((0, 1), (0, 2), (1, 2))) for t in (a, b)]
     if products[0] != products[1]:
         return "now full (products of inertia)" if products[1] else "no longer full"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pne_sym.review.edit_changes import axis_words, changes, count
+from pne_sym.review.edit_changes import axis_words, changes, count, kind
 
 Key = str | int
 _RANKS = (
@@ -56,7 +56,7 @@ def words(
     if path[0] == "leg_types" and path[-1] == "name" and len(path) == 3:
         return f"leg type {old} renamed {new}"
     if len(path) == 2 and path[0] == "leg_types":
-        return f"leg type {path[1]}{_leg(old or new)} {_kind(old, new)}"
+        return f"leg type {path[1]}{_leg(old or new)} {kind(old, new)}"
     place = _place(path[:-1], joint, legs)
     what = changes(str(path[-1]), pairs)
     return f"{place}: {what}" if place else what
@@ -111,7 +111,7 @@ def _entry(path: Sequence[Key], old: Any, new: Any, legs: Sequence[int]) -> str:
         return f"{place}: {what} {'inserted' if inserted else 'removed'}"
     if path[-2] == "legs":
         return f"leg {count(path[-1])}{_leg(table)} {'added' if inserted else 'removed'}"
-    return f"{_place(path[:-1], None, legs)}, entry {count(path[-1])} {_kind(old, new)}"
+    return f"{_place(path[:-1], None, legs)}, entry {count(path[-1])} {kind(old, new)}"
 
 
 def _joint(table: Any) -> str:
@@ -134,7 +134,3 @@ def _leg(table: Any) -> str:
     end = table.get("platform_joint")
     last = end.get("kind", "") if isinstance(end, Mapping) else end or ""
     return f" ({''.join(kinds)}{last if last != 'rigid' else ''})" if kinds else ""
-
-
-def _kind(old: Any, new: Any) -> str:
-    return "added" if old is None else "removed" if new is None else "changed"

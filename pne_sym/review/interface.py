@@ -9,9 +9,9 @@ import numpy as np
 
 from pne_sym.review.alignment import Alignment
 from pne_sym.review.difference import Change, OperationChange
+from pne_sym.review.manifests import COUNTS
 from pne_sym.review.model import Model, paths_of
 
-_COUNTS = ("mul", "add", "div", "sqrt", "trig")
 _PLAIN = ("space", "sizes", "joints", "actuators", "extra", "constraints", "home")
 
 
@@ -151,6 +151,6 @@ def operation_changes(before: Model, after: Model) -> Iterator[OperationChange]:
     """Functions whose operation counts changed."""
     old, new = (m.manifest["operations"] for m in (before, after))
     for name in dict.fromkeys((*old, *new)):
-        counts = [tuple(int(o.get(name, {}).get(c, 0)) for c in _COUNTS) for o in (old, new)]
+        counts = [tuple(int(o.get(name, {}).get(c, 0)) for c in COUNTS) for o in (old, new)]
         if counts[0] != counts[1]:
             yield OperationChange(name, *counts)

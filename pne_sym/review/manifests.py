@@ -21,7 +21,7 @@ _LARGEST = 100_000
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,99}")
 _PATH = re.compile(r"[A-Za-z0-9_.\[\]]{1,200}")
 _SIZES = ("NQ", "NV", "NU", "NC", "NW", "NJ")
-_COUNTS = ("mul", "add", "div", "sqrt", "trig")
+COUNTS = ("mul", "add", "div", "sqrt", "trig")
 Check = Callable[[Any], bool]
 
 
@@ -170,7 +170,7 @@ _ENTRIES: dict[str, Check] = {
             {"legs": _list(_is_count), "zero_by_structure": _list(_is_count)},
         )
     ),
-    "operations": _map(_fields(dict.fromkeys(_COUNTS, _is_count))),
+    "operations": _map(_fields(dict.fromkeys(COUNTS, _is_count))),
 }
 
 

@@ -1,4 +1,4 @@
-"""Finding a version of a model: by name, spec file, generated folder, or git revision of one."""
+"""A version of a model from where it was found: compiled, or as a folder has it."""
 
 from __future__ import annotations
 
@@ -10,22 +10,7 @@ from pne_sym.model.files import parse
 from pne_sym.model.reader import from_text
 from pne_sym.review.manifests import manifest_of
 from pne_sym.review.model import Model, from_folder, from_manipulator
-from pne_sym.review.sources import Source, find_source
-
-
-def find_version(text: str) -> Model:
-    """A version of a model.
-
-    Args:
-        text: a catalogue name, a spec file, a generated folder, or REVISION:PATH of a
-            spec file or a generated folder in the git repository of the working folder
-            (PATH from the repository's root, or from here where it begins with `./`).
-
-    Raises:
-        InputError: there is no such thing, or it cannot be read.
-        SpecError: the specification is at fault.
-    """
-    return version_of(find_source(text))
+from pne_sym.review.sources import Source
 
 
 def version_of(source: Source) -> Model:

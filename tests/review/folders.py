@@ -13,7 +13,9 @@ from pne_sym.backends.emission import emit
 from pne_sym.cli.app import app
 from pne_sym.review.compare import compare
 from pne_sym.review.difference import Comparison
-from pne_sym.review.versions import find_version
+from pne_sym.review.model import Model
+from pne_sym.review.sources import find_source
+from pne_sym.review.versions import version_of
 from tests.models import bundle, catalogue
 
 Edit = Callable[[str], str]
@@ -53,6 +55,11 @@ def edit(path: Path, change: Edit) -> None:
 def diff(*arguments: str | Path) -> Result:
     """`pne-gen diff` in this process."""
     return CliRunner().invoke(app, ["diff", *map(str, arguments)])
+
+
+def find_version(text: str) -> Model:
+    """A version of a model as `pne-gen diff` finds it."""
+    return version_of(find_source(text))
 
 
 def compared(before: Path, after: Path, *, run: bool = False) -> Comparison:

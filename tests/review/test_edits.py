@@ -16,8 +16,8 @@ from pne_sym.model.reader import from_text
 from pne_sym.review.alignment import align, joint_pairs, leg_pairs
 from pne_sym.review.compare import compare
 from pne_sym.review.edits import best_edits, edits
-from pne_sym.review.versions import find_version
 from tests.models import catalogue
+from tests.review.folders import find_version
 
 FILE = manipulators.path("planar_3rpr").read_text(encoding="utf-8")
 

@@ -20,10 +20,9 @@ from pne_sym.review import folders as reading
 from pne_sym.review.folders import read_folder
 from pne_sym.review.manifests import FORMATS, read_manifest
 from pne_sym.review.reproduction import reproduced
-from pne_sym.review.versions import find_version
 from tests.cli.test_diff import git
 from tests.models import bundle, catalogue, module
-from tests.review.folders import diff, edit, pair, texts, write
+from tests.review.folders import diff, edit, find_version, pair, texts, write
 
 MODEL = "planar_3rpr"
 Manifest = dict[str, Any]
