@@ -30,13 +30,14 @@ _OPERATORS: dict[type[ast.AST], str] = {
     ast.Gt: ">",
     ast.GtE: ">=",
 }
-_FILES = ("kernels/quaternions.py.jinja", "kernels/bounds.py.jinja")
+_FILES = tuple(f"kernels/{name}.py.jinja" for name in ("vectors", "quaternions", "bounds"))
 
 
 @cache
-def kernels() -> list[ast.FunctionDef]:
-    """The definitions in templates/kernels."""
-    (holder,) = ast.parse(f"class Kernels:\n{''.join(map(render, _FILES))}").body
+def kernels(quaternion_at: int | None = None) -> list[ast.FunctionDef]:
+    """The definitions in templates/kernels, for poses with a quaternion at this place, or none."""
+    texts = (render(name, d={"quaternion_at": quaternion_at}) for name in _FILES)
+    (holder,) = ast.parse(f"class Kernels:\n{''.join(texts)}").body
     assert isinstance(holder, ast.ClassDef)
     return [f for f in holder.body if isinstance(f, ast.FunctionDef)]
 
@@ -47,8 +48,10 @@ class KernelText:
     Attributes:
         operators: those that are written otherwise than in Python.
         calls: functions, methods and constants by name; {0}, {1} ... are operands.
-        other: all other methods, of {name} and {operands}; {f} stands for what precedes own names.
-        entries: entries {first} to {last} of {array}; end: what stands for the last one.
+        other: all other methods, of {name} and {operands}, {count} in number; {f} stands for what
+            precedes own names.
+        entries: entries {first} to {last} of {array}; end: what stands for the last one;
+        column: column {k} of a matrix.
         assign: {targets}, one or several, get a {value}; several: more than one of them;
         tuple_of: several values at once; ignored: a target that nobody reads.
         repeat: lines of the loop, of a {name}, its {state}, {going} (the first of that), {count},
@@ -60,6 +63,7 @@ class KernelText:
     other: str
     entries: str
     end: str
+    column: str
     assign: str
     several: str
     tuple_of: str
@@ -158,17 +162,21 @@ class KernelText:
         parts = (a.elts if isinstance(a, ast.Tuple) else [a] for a in e.args)
         operands = [self.of(a) for part in parts for a in part if ast.unparse(a) != "xp"]
         form = self.calls.get(name, self.other)
-        return form.format(*operands, name=name, operands=", ".join(operands), f=self.prefix)
+        facts = {"name": name, "operands": ", ".join(operands), "count": len(operands)}
+        return form.format(*operands, **facts, f=self.prefix)
 
     def _entries(self, e: ast.Subscript) -> str:
-        """Rows of an array, all states; the first of several results; a length."""
+        """Rows of an array, all states; a column; a length."""
         if isinstance(e.value, ast.Attribute):
             return self.calls["length"].format(self.of(e.value.value))
         assert isinstance(e.slice, ast.Tuple)
         rows, array = e.slice.elts[0], self.of(e.value)
+        if isinstance(e.slice.elts[1], ast.Constant) and e.slice.elts[1].value is not ...:
+            return self.column.format(array=array, k=ast.literal_eval(e.slice.elts[1]) + 1)
         if isinstance(rows, ast.Slice):
             first, last = (ast.literal_eval(x) if x else None for x in (rows.lower, rows.upper))
-            return self.entries.format(array=array, first=(first or 0) + 1, last=last or self.end)
+            last = self.end if last is None else last
+            return self.entries.format(array=array, first=(first or 0) + 1, last=last)
         k = ast.literal_eval(rows)
         at = self.end if k < 0 else k + 1
         return self.entries.format(array=array, first=at, last=at)

@@ -81,16 +81,16 @@ def _continued(text: str) -> str:
 
 def _facts(bundle: Bundle) -> dict[str, object]:
     """What the templates print."""
-    program, code, public = bundle.program, Code(bundle), Public(bundle)
+    program, code, public, d = bundle.program, Code(bundle), Public(bundle), describe(bundle)
     searches = {s.residual: s for f in program.public for s in f.steps if isinstance(s, Search)}
     return {
-        "d": describe(bundle),
+        "d": d,
         "program": program,
         "i": public.internal,
         "fields": field_views(bundle),
         "dimensions": _dimensions,
         "default": _default,
-        "actuated": column([place + 1 for place in describe(bundle).actuated]),
+        "actuated": column([place + 1 for place in d.actuated]),
         "home": [column(values) for values in bundle.coordinates.home],
         "exported": [public.exported(f) for f in program.public if f.is_exported],
         "meanings": {f.name: f.meaning for f in program.public if f.is_exported},
@@ -98,7 +98,7 @@ def _facts(bundle: Bundle) -> dict[str, object]:
         "runs": [(f, code.body(f)) for f in program.functions.values()],
         "prepare": code.prepared(),
         "prepared": [code.named(name) for name, _ in program.prepared],
-        "kernels": [(f, Kernels(public.internal)) for f in kernels()],
+        "kernels": [(f, Kernels(public.internal)) for f in kernels(d.quaternion_at)],
         "searches": searches.values(),
         "others": public.others,
         "column": column,

@@ -20,15 +20,19 @@ class Kernels(KernelText):
         "atan2": "atan2({0}, {1})",
         "cross": "cross({0}, {1}, 1)",
         "concat": "cat(1, {operands})",
-        "times": "{f}matrix_times({operands})",
+        "outer": "reshape({0}, [size({0}, 1), 1, size({0}, 2)]) .* reshape({1}, [1, size({1})])",
         "eye": "((1:size({0}, 1))' == 1:size({0}, 1))",
         "length": "size({0}, 1)",
+        "transposed": "permute({0}, [2, 1, 3])",
+        "stack": "reshape(cat(1, {operands}), [size({0}, 1), {count}, size({0}, 2)])",
         "inf": "Inf",
+        "tiny": "0.0",
         "pivot": repr(PIVOT),
     }
     other = "{f}{name}({operands})"
     entries = "{array}({first}:{last}, :)"
     end = "end"
+    column = "reshape({array}(:, {k}, :), [size({array}, 1), size({array}, 3)])"
     assign = "{targets} = {value};"
     several, tuple_of, ignored = "[{}]", "deal({})", "~"
     repeat = (

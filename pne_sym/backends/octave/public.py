@@ -11,9 +11,7 @@ from pne_sym.backends.steps import StepText, described
 from pne_sym.program.public import Argument, Default, PublicFunction
 
 EXPRESSIONS = {
-    "multiply": "{0} .* {1}",
-    "dot": "sum({0} .* {1}, 1)",
-    "scale": "{0} .* {1}",
+    **dict.fromkeys(("multiply", "scale"), "{0} .* {1}"),
     "entry": "{0}({numbers}, :)",
     "extend": "[{0}; zeros({rest}, n)]",
     "take": "{0}({numbers}, :, :)",
@@ -21,12 +19,8 @@ EXPRESSIONS = {
     "transposed": "permute({0}, [2, 1, 3])",
     "beside": "cat(2, {0}, {1})",
     "join": "cat(1, {0}, {1})",
-    "times": "{f}matrix_times({0}, {1})",
-    "half_form": "0.5 * sum({0} .* {f}matrix_times({1}, {0}), 1)",
     "inverse_root": "1.0 ./ {f}root({0})",
     "scale_columns": "{0} .* reshape({1}, [1, size({1})])",
-    "quaternion_rate": "0.5 * {f}multiplied([{1}; zeros(1, n)], {0})",
-    "rotation_of_angle": "reshape([cos({0}); sin({0}); -sin({0}); cos({0})], [2, 2, n])",
     "divide_rows": "{0}; {targets}({numbers}, :, :) = {targets}({numbers}, :, :) ./ "
     "reshape({1}, [1, 1, n])",
     "clear_at": "{0}; {targets}({numbers}, :) = 0",
@@ -40,7 +34,9 @@ EXPRESSIONS = {
     "impossible": "NaN({n}, n)",
     "split": "deal({0}(1:{n}, :, :), {0}({n} + 1:end, :, :))",
     "resolve": "{f}resolve({0}, {1}, {n})",
-    **{name: f"{{f}}{name}({{0}}, {{n}})" for name in ("null_basis", "spread")},
+    "null_basis": "{f}null_basis({0}, {n})",
+    "spread": "deal(prod({0}(1:{n}, :), 1), {f}where({0}(1, :) ~= 0, {0}({n}, :) ./ {0}(1, :), 0))",
+    "least_entry": "min({0}, [], 1) + 0 ./ ~any(isnan({0}), 1)",
 }
 """Operations that are more than a call of a function in templates/octave."""
 

@@ -10,7 +10,6 @@ from pne_sym.backends.python_text import PythonText
 from pne_sym.backends.scalar import Dialect, ScalarPrinter
 from pne_sym.backends.steps import StepText
 from pne_sym.backends.straight import Forms
-from pne_sym.program.array_operations import TINY
 
 _NAMES = {"sqrt": "s.sqrt", "nonzero": "s.nonzero", "atan2": "s.atan2"}
 _NAMES |= {"sin": "xp.sin", "cos": "xp.cos", "Abs": "abs", "Min": "xp.minimum"}
@@ -63,17 +62,10 @@ class Steps(StepText):
         "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
         "join": "s.xp.concat(({0}, {1}))",
         "beside": "s.xp.concat(({0}, {1}), axis=1)",
-        "dot": "s.xp.sum({0} * {1}, axis=0)",
         **dict.fromkeys(("scale", "scale_columns"), "{0} * {1}[None, ...]"),
-        "half_form": "0.5 * s.xp.sum({0} * s.times({1}, {0}), axis=0)",
         "impossible": "s.filled(s.xp.nan, {numbers})",
         "saddle": "s.xp.concat((s.xp.concat(({0}, -{1}), axis=1), s.xp.concat((s.transposed({1}), "
         "s.filled(0.0, ({1}.shape[1], {1}.shape[1]))), axis=1)))",
-        "choose_length": "s.xp.where({1} > 0.0, {1}, s.xp.where("
-        f"{{0}}[0, ...] > {TINY} * {{0}}[1, ...], {{0}}[0, ...], {{0}}[1, ...]))",
-        "rotation_of_angle": "s.xp.stack([s.xp.concat([s.xp.cos({0}), -s.xp.sin({0})]), "
-        "s.xp.concat([s.xp.sin({0}), s.xp.cos({0})])])",
-        "quaternion_rate": "0.5 * s.multiplied(s.xp.concat(({1}, s.filled(0.0, (1,)))), {0})",
     }
     call = "s.{name}({operands})"
     apply = "{targets} = {value}"
