@@ -103,7 +103,7 @@ typedef struct {
     delta_real inv_rus_rho2_1_t[4], inv_rus_size[4], inv_rus_size_t[4], inv_rus_size_t_2[4],
             inv_rus_size_t_3[4], rus_J_1_in_spec1_zz[4], rus_J_3_in_spec3_xx[4],
             rus_J_3_in_spec3_xy[4], rus_J_3_in_spec3_xz[4], rus_J_3_in_spec3_yz[4],
-            rus_J_3_in_spec3_zz[4], rus_J_3_t[4], rus_J_3_t_2[4], rus_Sigma_3_in_axes3_xx[4],
+            rus_J_3_in_spec3_zz[4], rus_Kd_1_t[4], rus_Kd_1_t_2[4], rus_Sigma_3_in_axes3_xx[4],
             rus_Sigma_3_in_axes3_yy[4], rus_Sigma_3_in_axes3_zz[4], rus_base_frame_xx[4],
             rus_base_frame_xy[4], rus_base_frame_xz[4], rus_base_frame_yx[4], rus_base_frame_yy[4],
             rus_base_frame_yz[4], rus_base_frame_zx[4], rus_base_frame_zy[4], rus_base_frame_zz[4],

@@ -747,7 +747,6 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real pus_h_3_in_spec3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
         const real pus_h_3_in_spec3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
         /* (pus-J_3) inertia tensor of link 3 about the connection point */
-        const real inv_pus_size_t = 1/pus_size_t;
         const real pus_J_3_t = pus_rho_tip_3_in_spec3_x*pus_rho_tip_3_in_spec3_x;
         const real pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
         const real pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
@@ -764,6 +763,8 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
             pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
         const real pus_J_3_in_spec3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 -
             pus_J_3_t_4);
+        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_pus_size_t = 1/pus_size_t;
         /* (pus-w_3) reciprocal vector 3 */
         const real pus_w_3_in_axes3_y = 1/pus_platform_joint_offset_x;
         /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
@@ -1608,8 +1609,8 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real pus_q_x, pus_q_y, pus_q_z, pus_J_3_t_4, pus_J_3_t_7, pus_J_3_t_8, pus_J_3_t_10,
-        pus_e_2_in_axes3_x, pus_q_1_t, pus_c_2, pus_s_2, pus_v_2_in_axes3_z, axis_z_pus_axes3_x,
+    real pus_q_x, pus_q_y, pus_q_z, pus_S_in_axes0_x, pus_disc_1, pus_q_1_t, pus_rho2_2, pus_c_2,
+        pus_s_2, pus_c_3, pus_e_2_in_axes3_x, pus_v_2_in_axes3_z, axis_z_pus_axes3_x,
         axis_z_pus_axes3_y, axis_z_pus_axes3_z, pus_e_1_in_axes3_y, axis_y_pus_axes3_x,
         axis_y_pus_axes3_y, axis_y_pus_axes3_z, axis_x_pus_axes3_x, axis_x_pus_axes3_y,
         axis_x_pus_axes3_z, pus_e_1_in_axes3_x, pus_w_1_in_axes3_x, pus_w_1_x, pus_w_1_y, pus_w_1_z,
@@ -1629,7 +1630,7 @@ typedef struct {
 INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
     *X, values_pus *v)
 {
-    /* (pus-J_3) inertia tensor of link 3 about the connection point */
+    /* (pus-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1646,33 +1647,37 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->pus_q_z = R_zx*m->pus_platform_point_x[i] + R_zy*m->pus_platform_point_y[i] +
         R_zz*m->pus_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real pus_J_3_t = t_x - m->pus_base_point_x[i] + v->pus_q_x;
+    const real pus_S_x = t_x - m->pus_base_point_x[i] + v->pus_q_x;
     const real t_y = X[1*w + j];
-    const real pus_J_3_t_2 = t_y - m->pus_base_point_y[i] + v->pus_q_y;
+    const real pus_S_y = t_y - m->pus_base_point_y[i] + v->pus_q_y;
     const real t_z = X[2*w + j];
-    const real pus_J_3_t_3 = t_z - m->pus_base_point_z[i] + v->pus_q_z;
-    v->pus_J_3_t_4 = pus_J_3_t*m->pus_base_frame_xx[i] + pus_J_3_t_2*m->pus_base_frame_yx[i] +
-        pus_J_3_t_3*m->pus_base_frame_zx[i];
-    const real pus_J_3_t_5 = pus_J_3_t*m->pus_base_frame_xy[i] +
-        pus_J_3_t_2*m->pus_base_frame_yy[i] + pus_J_3_t_3*m->pus_base_frame_zy[i];
-    const real pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
-        pus_J_3_t_3*pus_J_3_t_3;
-    v->pus_J_3_t_7 = m->pus_size_t[i] + v->pus_J_3_t_4*v->pus_J_3_t_4 - pus_J_3_t_6;
-    v->pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + v->pus_J_3_t_7;
-    const real pus_J_3_t_9 = root(v->pus_J_3_t_8)*m->pus_branch_2[i];
-    v->pus_J_3_t_10 = m->inv_pus_size_t[i]*pus_J_3_t_9*m->pus_platform_joint_offset_x[i];
-    v->pus_e_2_in_axes3_x =
-        m->inv_pus_size_t[i]*m->pus_platform_joint_offset_x[i]*(pus_J_3_t*m->pus_base_frame_xz[i]
-        + pus_J_3_t_2*m->pus_base_frame_yz[i] + pus_J_3_t_3*m->pus_base_frame_zz[i]);
+    const real pus_S_z = t_z - m->pus_base_point_z[i] + v->pus_q_z;
+    v->pus_S_in_axes0_x = pus_S_x*m->pus_base_frame_xx[i] + pus_S_y*m->pus_base_frame_yx[i] +
+        pus_S_z*m->pus_base_frame_zx[i];
+    const real pus_S_in_axes0_y = pus_S_x*m->pus_base_frame_xy[i] +
+        pus_S_y*m->pus_base_frame_yy[i] + pus_S_z*m->pus_base_frame_zy[i];
+    /* (pus-disc_1) discriminant of the distance equation */
+    const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+    v->pus_disc_1 = m->pus_size_t[i] + v->pus_S_in_axes0_x*v->pus_S_in_axes0_x - pus_disc_1_t;
     /* (pus-q_1) displacement of joint 1 */
-    v->pus_q_1_t = root(v->pus_J_3_t_7)*m->pus_branch_1[i];
+    v->pus_q_1_t = m->pus_branch_1[i]*root(v->pus_disc_1);
+    /* (pus-rho2_2) squared amplitude */
+    v->pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + v->pus_disc_1;
+    /* (pus-root_2) root, with the sign of the branch */
+    const real pus_root_2 = m->pus_branch_2[i]*root(v->pus_rho2_2);
     /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_pus_J_3_t_8 = 1/v->pus_J_3_t_8;
-    v->pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*v->pus_q_1_t;
+    const real inv_pus_rho2_2 = 1/v->pus_rho2_2;
+    v->pus_c_2 = -inv_pus_rho2_2*v->pus_q_1_t*pus_root_2;
     /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-    v->pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9;
+    v->pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+    /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+    v->pus_c_3 = m->inv_pus_size_t[i]*m->pus_platform_joint_offset_x[i]*pus_root_2;
+    /* (pus-q_3) displacement of joint 3 */
+    v->pus_e_2_in_axes3_x =
+        m->inv_pus_size_t[i]*m->pus_platform_joint_offset_x[i]*(pus_S_x*m->pus_base_frame_xz[i]
+        + pus_S_y*m->pus_base_frame_yz[i] + pus_S_z*m->pus_base_frame_zz[i]);
     /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-    v->pus_v_2_in_axes3_z = v->pus_J_3_t_10*m->pus_platform_joint_offset_x[i];
+    v->pus_v_2_in_axes3_z = v->pus_c_3*m->pus_platform_joint_offset_x[i];
     /* (pus-w_1) reciprocal vector 1 */
     v->axis_z_pus_axes3_x = m->pus_base_frame_xy[i]*v->pus_c_2 -
         m->pus_base_frame_xx[i]*v->pus_s_2;
@@ -1683,18 +1688,18 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->pus_e_1_in_axes3_y = v->pus_c_2*v->pus_e_2_in_axes3_x;
     const real pus_w_1_t = v->pus_e_2_in_axes3_x*v->pus_s_2;
     v->axis_y_pus_axes3_x = m->pus_base_frame_xx[i]*v->pus_e_1_in_axes3_y -
-        v->pus_J_3_t_10*m->pus_base_frame_xz[i] + m->pus_base_frame_xy[i]*pus_w_1_t;
+        m->pus_base_frame_xz[i]*v->pus_c_3 + m->pus_base_frame_xy[i]*pus_w_1_t;
     v->axis_y_pus_axes3_y = m->pus_base_frame_yx[i]*v->pus_e_1_in_axes3_y -
-        v->pus_J_3_t_10*m->pus_base_frame_yz[i] + m->pus_base_frame_yy[i]*pus_w_1_t;
+        m->pus_base_frame_yz[i]*v->pus_c_3 + m->pus_base_frame_yy[i]*pus_w_1_t;
     v->axis_y_pus_axes3_z = m->pus_base_frame_zx[i]*v->pus_e_1_in_axes3_y -
-        v->pus_J_3_t_10*m->pus_base_frame_zz[i] + m->pus_base_frame_zy[i]*pus_w_1_t;
+        m->pus_base_frame_zz[i]*v->pus_c_3 + m->pus_base_frame_zy[i]*pus_w_1_t;
     v->axis_x_pus_axes3_x = v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_z -
         v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_y;
     v->axis_x_pus_axes3_y = v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_x -
         v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_z;
     v->axis_x_pus_axes3_z = v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_y -
         v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_x;
-    v->pus_e_1_in_axes3_x = v->pus_J_3_t_10*v->pus_c_2;
+    v->pus_e_1_in_axes3_x = v->pus_c_2*v->pus_c_3;
     v->pus_w_1_in_axes3_x = 1/v->pus_e_1_in_axes3_x;
     v->pus_w_1_x = v->axis_x_pus_axes3_x*v->pus_w_1_in_axes3_x;
     v->pus_w_1_y = v->axis_x_pus_axes3_y*v->pus_w_1_in_axes3_x;
@@ -1707,13 +1712,13 @@ INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->pus_g_in_axes3_z = v->pus_c_2*m->pus_g_in_axes0_y[i] -
         m->pus_g_in_axes0_x[i]*v->pus_s_2;
     v->pus_g_in_axes3_x = v->pus_e_2_in_axes3_x*m->pus_g_in_axes0_z[i] +
-        v->pus_J_3_t_10*pus_acc_3_t;
+        pus_acc_3_t*v->pus_c_3;
     v->pus_g_in_axes3_y = pus_acc_3_t*v->pus_e_2_in_axes3_x -
-        v->pus_J_3_t_10*m->pus_g_in_axes0_z[i];
+        v->pus_c_3*m->pus_g_in_axes0_z[i];
     /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     v->pus_d_Gamma_2_t = v->pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_z[i] -
-        v->pus_J_3_t_10*m->pus_h_3_in_spec3_x[i];
+        v->pus_c_3*m->pus_h_3_in_spec3_x[i];
     /* (pus-H_a_1) moment of the column's unit force about the platform origin */
     v->pus_H_a_1_x = v->pus_q_y*v->pus_w_1_z - v->pus_q_z*v->pus_w_1_y;
     v->pus_H_a_1_y = v->pus_q_z*v->pus_w_1_x - v->pus_q_x*v->pus_w_1_z;
@@ -1750,7 +1755,7 @@ INLINE void stage_pus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->pus_qd_3 = pus_qd_3_t*m->pus_w_3_in_axes3_y[i];
     /* (pus-omega_2) angular velocity of link 2 */
     const real pus_omega_2_in_axes3_x = v->pus_e_2_in_axes3_x*v->pus_qd_2;
-    const real pus_omega_2_in_axes3_y = -v->pus_J_3_t_10*v->pus_qd_2;
+    const real pus_omega_2_in_axes3_y = -v->pus_c_3*v->pus_qd_2;
     /* (pus-W_3) centripetal tensor of link 3 */
     v->pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*v->pus_qd_3;
     v->pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*v->pus_qd_3;
@@ -1847,7 +1852,7 @@ INLINE void stage_pus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         pus_rel_o_in_axes3_y);
     /* (pus-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real pus_alpha_2_o_t = v->pus_e_2_in_axes3_x*pus_qdd_2_o_t;
-    const real pus_alpha_2_o_in_axes3_y = v->pus_J_3_t_10*pus_qdd_2_o_t;
+    const real pus_alpha_2_o_in_axes3_y = v->pus_c_3*pus_qdd_2_o_t;
     /* (pus-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real pus_alpha_3_o_in_axes3_x = v->pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
     const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - v->pus_W_3_in_axes3_xz;
@@ -1884,7 +1889,7 @@ INLINE void stage_pus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_o_in_axes3_y;
     /* (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
-    const real pus_G_o_t = v->pus_w_2_in_axes3_z*(v->pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+    const real pus_G_o_t = v->pus_w_2_in_axes3_z*(v->pus_c_3*pus_mu_3_o_in_axes3_y -
         v->pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
     const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*m->pus_w_3_in_axes3_y[i];
     /* (pus-c_o) remainder of: leg force on the platform without actuation and without the mass at the
@@ -1917,14 +1922,14 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
 {
     /* (pus-J_3) inertia tensor of link 3 about the connection point */
     const real pus_J_3_in_axes2_yz = m->pus_J_3_in_spec3_xy[i]*v->pus_e_2_in_axes3_x +
-        m->pus_J_3_in_spec3_yz[i]*v->pus_J_3_t_10;
+        m->pus_J_3_in_spec3_yz[i]*v->pus_c_3;
     /* (pus-w_2) reciprocal vector 2 */
     const real pus_w_2_in_axes3_x = v->pus_s_2*v->pus_w_1_in_axes3_x*v->pus_w_2_in_axes3_z;
     /* (pus-w_3) reciprocal vector 3 */
     const real pus_w_3_in_axes3_x =
         -v->pus_e_1_in_axes3_y*v->pus_w_1_in_axes3_x*m->pus_w_3_in_axes3_y[i];
     /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-    const real pus_d_alpha_3_t = v->pus_J_3_t_10*v->pus_w_2_in_axes3_z;
+    const real pus_d_alpha_3_t = v->pus_c_3*v->pus_w_2_in_axes3_z;
     /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*v->pus_w_2_in_axes3_z;
@@ -1934,13 +1939,13 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
     /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real pus_d_Gamma_2_t_2 =
-        v->pus_w_2_in_axes3_z*(v->pus_J_3_t_10*(m->pus_J_3_in_spec3_xz[i]*v->pus_e_2_in_axes3_x
-        + m->pus_J_3_in_spec3_zz[i]*v->pus_J_3_t_10) -
+        v->pus_w_2_in_axes3_z*(v->pus_c_3*(m->pus_J_3_in_spec3_xz[i]*v->pus_e_2_in_axes3_x +
+        m->pus_J_3_in_spec3_zz[i]*v->pus_c_3) -
         v->pus_e_2_in_axes3_x*(-m->pus_J_3_in_spec3_xx[i]*v->pus_e_2_in_axes3_x -
-        m->pus_J_3_in_spec3_xz[i]*v->pus_J_3_t_10));
+        m->pus_J_3_in_spec3_xz[i]*v->pus_c_3));
     const real pus_d_Gamma_2_t_3 = pus_J_3_in_axes2_yz*m->pus_w_3_in_axes3_y[i];
     const real pus_d_Gamma_2_in_axes3_x = v->pus_w_1_in_axes3_x*(pus_d_Gamma_2_t_2*v->pus_s_2
-        - pus_d_Gamma_2_t_3*v->pus_e_1_in_axes3_y) - v->pus_J_3_t_10*m->pus_h_3_in_spec3_y[i];
+        - pus_d_Gamma_2_t_3*v->pus_e_1_in_axes3_y) - v->pus_c_3*m->pus_h_3_in_spec3_y[i];
     const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_3 -
         v->pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_y[i];
     const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t_2 - v->pus_d_Gamma_2_t;
@@ -1949,8 +1954,7 @@ INLINE void stage_pus_M_dynamics(const prepared *m, size_t i, values_pus *v)
     const real pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*v->pus_w_2_in_axes3_z;
     /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
-    const real pus_d_c_in_axes3_xx =
-        v->pus_J_3_t_10*m->pus_h_3_in_spec3_y[i]*pus_w_2_in_axes3_x -
+    const real pus_d_c_in_axes3_xx = v->pus_c_3*m->pus_h_3_in_spec3_y[i]*pus_w_2_in_axes3_x -
         m->pus_link1_mass[i]*v->pus_w_1_in_axes3_x*v->pus_w_1_in_axes3_x -
         m->pus_h_3_in_spec3_z[i]*pus_w_3_in_axes3_x -
         pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
@@ -2017,7 +2021,7 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
 {
     /* (pus-alpha_2) angular acceleration of link 2 */
     const real pus_alpha_2_t = v->pus_e_2_in_axes3_x*v->pus_qdd_2_t;
-    const real pus_alpha_2_in_axes3_y = v->pus_J_3_t_10*v->pus_qdd_2_t;
+    const real pus_alpha_2_in_axes3_y = v->pus_c_3*v->pus_qdd_2_t;
     /* (pus-alpha_3) angular acceleration of link 3 */
     const real pus_alpha_3_in_axes3_x = v->pus_W_3_in_axes3_yz - pus_alpha_2_t;
     const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - v->pus_W_3_in_axes3_xz;
@@ -2053,7 +2057,7 @@ INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
         m->pus_J_3_in_spec3_yz[i]*pus_alpha_2_in_axes3_y;
     /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real pus_G_t = v->pus_w_2_in_axes3_z*(v->pus_J_3_t_10*pus_mu_3_in_axes3_y -
+    const real pus_G_t = v->pus_w_2_in_axes3_z*(v->pus_c_3*pus_mu_3_in_axes3_y -
         v->pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x);
     const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*m->pus_w_3_in_axes3_y[i];
     /* (pus-c) leg force on the platform without actuation and without the mass at the connection
@@ -2160,7 +2164,7 @@ INLINE void any_entries_pus(size_t k, size_t count, const values_pus *v, real *o
 
 INLINE void any_singular_pus(const prepared *m, size_t i, size_t k, const values_pus *v, real *o)
 {
-    o[k] = UNLESS(magnitude(v->pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]) +
+    o[k] = UNLESS(magnitude(v->pus_rho2_2) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]) +
         UNLESS(magnitude(v->pus_v_2_in_axes3_z) > TOLERANCE*m->pus_size[i]) +
         UNLESS(magnitude(v->pus_e_1_in_axes3_x) > LEAST_1);
 }
@@ -2240,7 +2244,7 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     any_sums_pus(k, count, add, &v, terms);
     any_sums_pus_2(k, count, add, &v, terms + 20*count);
     any_entries_pus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
         (v.pus_H_a_1_y + v.pus_H_a_1_z));
@@ -2430,7 +2434,7 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_pus_X(m, w, i, j, s, X, &v);
     stage_pus_M_dynamics(m, i, &v);
     any_sums_pus(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 1*count);
 }
 
@@ -2599,7 +2603,7 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_pus_V_X(m, w, i, j, V, &v);
     stage_pus_Z_dynamics(m, w, i, j, V, &v);
     any_sums_pus_2(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 1*count);
 }
 
@@ -2694,8 +2698,8 @@ INLINE void H_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     any_entries_pus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
+    o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i])
         + UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
         (v.pus_H_a_1_y + v.pus_H_a_1_z));
@@ -2836,7 +2840,7 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, pus_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, pus_R_a_t_3);  /* R_a_z_of_legs */
     any_entries_pus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 7*count);
 }
 
@@ -2947,20 +2951,19 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t i, s
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     /* (pus-q_1) displacement of joint 1 */
-    const real pus_q_1 = v.pus_J_3_t_4 + v.pus_q_1_t;
+    const real pus_q_1 = v.pus_S_in_axes0_x + v.pus_q_1_t;
     /* (pus-q_2) displacement of joint 2 */
     const real pus_q_2 = angle(v.pus_s_2, v.pus_c_2);
     /* (pus-q_3) displacement of joint 3 */
-    const real pus_q_3 = angle(-v.pus_e_2_in_axes3_x, v.pus_J_3_t_10);
+    const real pus_q_3 = angle(-v.pus_e_2_in_axes3_x, v.pus_c_3);
     /* (pus-q_1) */
     o[0*count + k] = pus_q_1;
     /* (pus-q_2) */
     o[1*count + k] = pus_q_2;
     /* (pus-q_3) */
     o[2*count + k] = pus_q_3;
-    o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) >
-        TOLERANCE*TOLERANCE*m->pus_size_t_2[i]);
+    o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]);
     o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
 }
 
@@ -3027,7 +3030,7 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.pus_qd_2;
     /* (pus-qd_3) rate of joint 3 */
     o[2*count + k] = v.pus_qd_3;
-    o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.pus_qd_1 + (v.pus_qd_2 + v.pus_qd_3);
 }
@@ -3097,7 +3100,7 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = -v.pus_qdd_2_t;
     /* (pus-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.pus_qdd_3;
-    o[3*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.pus_qdd_1 + (v.pus_qdd_2_t + v.pus_qdd_3);
 }
@@ -3186,7 +3189,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = v.pus_w_1_x;
     o[4*count + k] = v.pus_w_1_y;
     o[5*count + k] = v.pus_w_1_z;
-    o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 7*count);
 }
 
@@ -3243,21 +3246,19 @@ INLINE void potential_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
     values_pus v;
     stage_pus_X(m, w, i, j, s, X, &v);
     /* (pus-q_1) displacement of joint 1 */
-    const real pus_q_1 = v.pus_J_3_t_4 + v.pus_q_1_t;
+    const real pus_q_1 = v.pus_S_in_axes0_x + v.pus_q_1_t;
     /* (potential) */
     const real pus_potential_t_3 = m->pus_g_in_axes0_z[i]*(m->pus_h_1_in_spec0_z[i] +
         m->pus_potential_t_2[i] + v.pus_e_2_in_axes3_x*m->pus_h_3_in_spec3_x[i] +
-        v.pus_J_3_t_10*m->pus_h_3_in_spec3_z[i]) +
-        m->pus_g_in_axes0_x[i]*(m->pus_h_1_in_spec0_x[i] +
-        m->pus_link1_mass[i]*(m->pus_b_in_axes0_x[i] + pus_q_1) -
+        v.pus_c_3*m->pus_h_3_in_spec3_z[i]) + m->pus_g_in_axes0_x[i]*(m->pus_h_1_in_spec0_x[i]
+        + m->pus_link1_mass[i]*(m->pus_b_in_axes0_x[i] + pus_q_1) -
         m->pus_h_3_in_spec3_y[i]*v.pus_s_2 - v.pus_c_2*v.pus_d_Gamma_2_t) +
         m->pus_g_in_axes0_y[i]*(m->pus_h_1_in_spec0_y[i] + m->pus_potential_t[i] +
         v.pus_c_2*m->pus_h_3_in_spec3_y[i] - v.pus_d_Gamma_2_t*v.pus_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, pus_potential_t_3);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) >
-        TOLERANCE*TOLERANCE*m->pus_size_t_2[i]);
+    o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*m->pus_size_t_2[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3323,7 +3324,7 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
     stage_pus_X(m, w, i, j, s, X, &v);
     /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real pus_pivot_size = magnitude(v.pus_J_3_t_8);
+    const real pus_pivot_size = magnitude(v.pus_rho2_2);
     const real pus_pivot_size_2 = magnitude(v.pus_v_2_in_axes3_z);
     const real pus_pivot_size_3 = magnitude(v.pus_e_1_in_axes3_x);
     const real pus_least_pivots = lesser(lesser(pus_pivot_size_3,
@@ -3339,11 +3340,11 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t i, size_t j, 
     any_entries_pus(k, count, &v, o);
     /* (pus-G) */
     o[6*count + k] = pus_least_pivots;
-    o[7*count + k] = v.pus_J_3_t_7;
-    o[8*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+    o[7*count + k] = v.pus_disc_1;
+    o[8*count + k] = UNLESS(v.pus_disc_1 >= 0);
     any_singular_pus(m, i, k, &v, o + 9*count);
     o[10*count + k] = ((v.pus_w_1_x + v.pus_w_1_y) + (v.pus_w_1_z + v.pus_H_a_1_x)) +
-        ((v.pus_H_a_1_y + v.pus_H_a_1_z) + (pus_least_pivots + v.pus_J_3_t_7));
+        ((v.pus_H_a_1_y + v.pus_H_a_1_z) + (pus_least_pivots + v.pus_disc_1));
 }
 
 INLINE void condition_place_pus(size_t w, size_t i, size_t k, size_t at, size_t count, const real

@@ -571,7 +571,6 @@ def _prepare(p):
     pus_h_3_in_spec3_y = pus_link3_centre_of_mass_y*pus_link3_mass
     pus_h_3_in_spec3_z = pus_link3_centre_of_mass_z*pus_link3_mass
     # (pus-J_3) inertia tensor of link 3 about the connection point
-    inv_pus_size_t = 1.0/pus_size_t
     pus_J_3_t = pus_rho_tip_3_in_spec3_x*pus_rho_tip_3_in_spec3_x
     pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y
     pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z
@@ -588,6 +587,8 @@ def _prepare(p):
     pus_link3_inertia_yz - pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass
     )
     pus_J_3_in_spec3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4)
+    # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_pus_size_t = 1.0/pus_size_t
     # (pus-w_3) reciprocal vector 3
     pus_w_3_in_axes3_y = 1.0/pus_platform_joint_offset_x
     # (pus-acc_1) acceleration of the reference point of link 1, less gravity
@@ -1974,7 +1975,7 @@ def _run_dynamics(m, X, V):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -1984,36 +1985,38 @@ def _run_dynamics(m, X, V):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
-        pus_J_3_in_axes2_yz = (
-        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_J_3_in_axes2_yz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_c_3
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -2022,7 +2025,7 @@ def _run_dynamics(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -2031,15 +2034,15 @@ def _run_dynamics(m, X, V):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2050,7 +2053,7 @@ def _run_dynamics(m, X, V):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -2078,7 +2081,7 @@ def _run_dynamics(m, X, V):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -2115,9 +2118,9 @@ def _run_dynamics(m, X, V):
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder of: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
-        pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_c_3*pus_qdd_2_o_t
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_c_3*pus_w_2_in_axes3_z
         # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
@@ -2131,8 +2134,8 @@ def _run_dynamics(m, X, V):
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
-        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_g_in_axes3_x = pus_acc_3_t*pus_c_3 + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_c_3*pus_g_in_axes0_z
         # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_g_in_axes3_x
         pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - pus_g_in_axes3_y
@@ -2171,17 +2174,17 @@ def _run_dynamics(m, X, V):
             pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_c_3*pus_h_3_in_spec3_x
         pus_d_Gamma_2_t_2 = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_zz*pus_J_3_t_10) -
+        pus_w_2_in_axes3_z*(pus_c_3*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_zz*pus_c_3) -
             pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_xz*pus_J_3_t_10))
+            pus_J_3_in_spec3_xz*pus_c_3))
         )
         pus_d_Gamma_2_t_3 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
         pus_w_1_in_axes3_x*(pus_d_Gamma_2_t_2*pus_s_2 - pus_d_Gamma_2_t_3*pus_e_1_in_axes3_y) -
-            pus_J_3_t_10*pus_h_3_in_spec3_y
+            pus_c_3*pus_h_3_in_spec3_y
         )
         pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_3 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
         pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t_2 - pus_d_Gamma_2_t
@@ -2189,7 +2192,7 @@ def _run_dynamics(m, X, V):
         pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_z
         # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
@@ -2199,7 +2202,7 @@ def _run_dynamics(m, X, V):
         pus_c_t_3 = pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2)
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
-        pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+        pus_c_3*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
             pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
             pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
@@ -2309,7 +2312,7 @@ def _run_dynamics(m, X, V):
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -2512,7 +2515,7 @@ def _run_M(m, X):
             pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
             pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -2522,38 +2525,40 @@ def _run_M(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
-        pus_J_3_in_axes2_yz = (
-        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_J_3_in_axes2_yz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_c_3
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -2562,15 +2567,15 @@ def _run_M(m, X):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2581,7 +2586,7 @@ def _run_M(m, X):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
@@ -2589,7 +2594,7 @@ def _run_M(m, X):
         # (pus-w_3) reciprocal vector 3
         pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_c_3*pus_w_2_in_axes3_z
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*pus_w_2_in_axes3_z
         pus_d_Gamma_3_in_axes3_x = (
@@ -2597,17 +2602,17 @@ def _run_M(m, X):
             pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_c_3*pus_h_3_in_spec3_x
         pus_d_Gamma_2_t_2 = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_zz*pus_J_3_t_10) -
+        pus_w_2_in_axes3_z*(pus_c_3*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_zz*pus_c_3) -
             pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_xz*pus_J_3_t_10))
+            pus_J_3_in_spec3_xz*pus_c_3))
         )
         pus_d_Gamma_2_t_3 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
         pus_w_1_in_axes3_x*(pus_d_Gamma_2_t_2*pus_s_2 - pus_d_Gamma_2_t_3*pus_e_1_in_axes3_y) -
-            pus_J_3_t_10*pus_h_3_in_spec3_y
+            pus_c_3*pus_h_3_in_spec3_y
         )
         pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_3 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
         pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t_2 - pus_d_Gamma_2_t
@@ -2615,7 +2620,7 @@ def _run_M(m, X):
         pus_d_G_in_axes3_zy = pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_z
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
-        pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+        pus_c_3*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
             pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
             pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
@@ -2689,7 +2694,7 @@ def _run_M(m, X):
         pus_M_aa_t_5 = pus_M_ta_t_2*pus_q_z + pus_M_ta_t_9*pus_q_x
         pus_M_aa_t_6 = pus_M_ta_t_2*pus_q_y + pus_M_ta_t_6*pus_q_x
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -2882,7 +2887,7 @@ def _run_Z(m, X, V):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -2892,33 +2897,36 @@ def _run_Z(m, X, V):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -2927,7 +2935,7 @@ def _run_Z(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -2936,15 +2944,15 @@ def _run_Z(m, X, V):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2955,7 +2963,7 @@ def _run_Z(m, X, V):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
@@ -2977,7 +2985,7 @@ def _run_Z(m, X, V):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -3014,7 +3022,7 @@ def _run_Z(m, X, V):
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder of: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
-        pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_c_3*pus_qdd_2_o_t
         # (pus-alpha_3_o) remainder of: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
@@ -3028,8 +3036,8 @@ def _run_Z(m, X, V):
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
-        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_g_in_axes3_x = pus_acc_3_t*pus_c_3 + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_c_3*pus_g_in_axes0_z
         # (pus-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_g_in_axes3_x
         pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y - pus_g_in_axes3_y
@@ -3063,7 +3071,7 @@ def _run_Z(m, X, V):
         )
         # (pus-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_o_t = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_o_in_axes3_y -
             pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
@@ -3104,7 +3112,7 @@ def _run_Z(m, X, V):
         pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x
         pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -3185,7 +3193,7 @@ def _run_H(m, X):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
             pus_size_t_2,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3195,33 +3203,36 @@ def _run_H(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -3230,15 +3241,15 @@ def _run_H(m, X):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3249,7 +3260,7 @@ def _run_H(m, X):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -3259,7 +3270,7 @@ def _run_H(m, X):
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0)
         )
         # (pus-w_1) reciprocal vector 1
@@ -3425,7 +3436,7 @@ def _run_required(m, X, V, A):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3435,33 +3446,36 @@ def _run_required(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -3470,7 +3484,7 @@ def _run_required(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -3479,15 +3493,15 @@ def _run_required(m, X, V, A):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3498,7 +3512,7 @@ def _run_required(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -3523,7 +3537,7 @@ def _run_required(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -3563,7 +3577,7 @@ def _run_required(m, X, V, A):
         pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
-        pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -3577,8 +3591,8 @@ def _run_required(m, X, V, A):
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
-        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_g_in_axes3_x = pus_acc_3_t*pus_c_3 + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_c_3*pus_g_in_axes0_z
         pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_g_in_axes3_x
         pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y - pus_g_in_axes3_y
         pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z - pus_g_in_axes3_z
@@ -3609,8 +3623,7 @@ def _run_required(m, X, V, A):
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_t = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_in_axes3_y -
-            pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3652,7 +3665,7 @@ def _run_required(m, X, V, A):
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -3742,7 +3755,7 @@ def _run_inverse_kinematics(m, X):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
             pus_size_t_2,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3752,41 +3765,41 @@ def _run_inverse_kinematics(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
-        pus_q_1 = pus_J_3_t_4 + pus_q_1_t
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-q_2) displacement of joint 2
         pus_q_2 = atan2(pus_s_2, pus_c_2)
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-q_3) displacement of joint 3
-        pus_q_3 = atan2(-pus_e_2_in_axes3_x, pus_J_3_t_10)
-        ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
+        pus_q_3 = atan2(-pus_e_2_in_axes3_x, pus_c_3)
+        ok = ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
         # (pus-q_1) displacement of joint 1
         out_q[_q_pus[0][leg]] = pus_q_1
         # (pus-q_2) displacement of joint 2
@@ -3859,7 +3872,7 @@ def _run_joint_rates(m, X, V):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
             pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -3869,33 +3882,36 @@ def _run_joint_rates(m, X, V):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -3904,7 +3920,7 @@ def _run_joint_rates(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -3913,15 +3929,15 @@ def _run_joint_rates(m, X, V):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3932,7 +3948,7 @@ def _run_joint_rates(m, X, V):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
@@ -3953,7 +3969,7 @@ def _run_joint_rates(m, X, V):
         )
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4059,7 +4075,7 @@ def _run_joint_accelerations(m, X, V, A):
             pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
             pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4069,33 +4085,36 @@ def _run_joint_accelerations(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -4104,7 +4123,7 @@ def _run_joint_accelerations(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -4113,15 +4132,15 @@ def _run_joint_accelerations(m, X, V, A):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4132,7 +4151,7 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
@@ -4154,7 +4173,7 @@ def _run_joint_accelerations(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
         # (pus-S_ddot) acceleration of the connection point
@@ -4191,7 +4210,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qdd_3) acceleration of joint 3
         pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4302,7 +4321,7 @@ def _run_legs(m, X, V, A):
             pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
             pus_w_3_in_axes3_y,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4312,33 +4331,36 @@ def _run_legs(m, X, V, A):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -4347,7 +4369,7 @@ def _run_legs(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -4356,15 +4378,15 @@ def _run_legs(m, X, V, A):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4375,7 +4397,7 @@ def _run_legs(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -4400,7 +4422,7 @@ def _run_legs(m, X, V, A):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -4440,7 +4462,7 @@ def _run_legs(m, X, V, A):
         pus_qdd_3 = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
         pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
-        pus_alpha_2_in_axes3_y = pus_J_3_t_10*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -4454,8 +4476,8 @@ def _run_legs(m, X, V, A):
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
         pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_g_in_axes3_z = pus_c_2*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
-        pus_g_in_axes3_x = pus_J_3_t_10*pus_acc_3_t + pus_e_2_in_axes3_x*pus_g_in_axes0_z
-        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_J_3_t_10*pus_g_in_axes0_z
+        pus_g_in_axes3_x = pus_acc_3_t*pus_c_3 + pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_g_in_axes3_y = pus_acc_3_t*pus_e_2_in_axes3_x - pus_c_3*pus_g_in_axes0_z
         pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_g_in_axes3_x
         pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y - pus_g_in_axes3_y
         pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z - pus_g_in_axes3_z
@@ -4486,8 +4508,7 @@ def _run_legs(m, X, V, A):
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         pus_G_t = (
-        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_in_axes3_y -
-            pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
@@ -4525,7 +4546,7 @@ def _run_legs(m, X, V, A):
             axis_z_pus_axes3_z*pus_c_true_in_axes3_z
         )
         ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4606,7 +4627,7 @@ def _run_potential(m, X):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_potential_t, pus_potential_t_2, pus_size_t, pus_size_t_2,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4616,47 +4637,48 @@ def _run_potential(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
-        pus_q_1 = pus_J_3_t_4 + pus_q_1_t
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_J_3_t_10*pus_h_3_in_spec3_x
+        pus_d_Gamma_2_t = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_c_3*pus_h_3_in_spec3_x
         # (potential) potential energy
         pus_potential_t_3 = (
         pus_g_in_axes0_x*(pus_h_1_in_spec0_x + pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) -
             pus_c_2*pus_d_Gamma_2_t - pus_h_3_in_spec3_y*pus_s_2) +
             pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_c_2*pus_h_3_in_spec3_y -
             pus_d_Gamma_2_t*pus_s_2) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2 +
-            pus_J_3_t_10*pus_h_3_in_spec3_z + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x)
+            pus_c_3*pus_h_3_in_spec3_z + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x)
         )
-        ok = (
-        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
-        )
+        ok = ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
         # (potential) potential energy
         potential_t_2 += pus_potential_t_3
     # (potential) potential energy
@@ -4726,7 +4748,7 @@ def _run_condition(m, X):
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
             pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
         ) = k
-        # (pus-J_3) inertia tensor of link 3 about the connection point
+        # (pus-S) from the base point to the connection point
         pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
@@ -4736,35 +4758,38 @@ def _run_condition(m, X):
         pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
-        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
-        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
-        pus_J_3_t_4 = (
-        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
+        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        pus_J_3_t_5 = (
-        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy
+        pus_S_in_axes0_y = (
+        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
-        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
-        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
-        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
-        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
-        pus_e_2_in_axes3_x = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
-        )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = sqrt(pus_J_3_t_7)*pus_branch_1
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        # (pus-rho2_2) squared amplitude
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
+        # (pus-root_2) root, with the sign of the branch
+        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
-        pus_c_2 = -inv_pus_J_3_t_8*pus_J_3_t_9*pus_q_1_t
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-q_3) displacement of joint 3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
         axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
         axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
@@ -4773,15 +4798,15 @@ def _run_condition(m, X):
         pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_xz
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_yz
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_10*pus_base_frame_zz
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4792,13 +4817,13 @@ def _run_condition(m, X):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
         pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_pivot_size = abs(pus_J_3_t_8)
+        pus_pivot_size = abs(pus_rho2_2)
         pus_pivot_size_2 = abs(pus_v_2_in_axes3_z)
         pus_pivot_size_3 = abs(pus_e_1_in_axes3_x)
         pus_least_pivots = (
@@ -4816,9 +4841,9 @@ def _run_condition(m, X):
         pus_spread_t_4 = (
         pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 + pus_spread_t_3*pus_spread_t_3
         )
-        reached = reached & (pus_J_3_t_7 >= 0.0)
+        reached = reached & (pus_disc_1 >= 0.0)
         clear = (
-        clear & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        clear & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -4834,7 +4859,7 @@ def _run_condition(m, X):
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_pus[0][leg]] = pus_least_pivots
-        out_reach[_reach_pus[0][leg]] = pus_J_3_t_7
+        out_reach[_reach_pus[0][leg]] = pus_disc_1
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_pus)*spread_t
     # (spread) rms distance of the platform points from their centroid

@@ -765,28 +765,32 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
         const real rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
         /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_t = R(0.5)*rus_size_t;
-        const real rus_J_3_t_2 = R(0.5)*rus_size_t_2;
-        const real inv_rus_size_t = 1/rus_size_t;
-        const real inv_rus_size_t_2 = 1/rus_size_t_2;
-        const real rus_J_3_t_3 = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x;
-        const real rus_J_3_t_4 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
-        const real rus_J_3_t_5 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
-        const real rus_J_3_t_6 = rus_J_3_t_3 + rus_J_3_t_4 + rus_J_3_t_5;
-        const real rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t_3 -
-            rus_J_3_t_6);
+        const real rus_J_3_t = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
+        const real rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
+        const real rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3;
+        const real rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t -
+            rus_J_3_t_4);
         const real rus_J_3_in_spec3_xy = rus_link3_inertia_xy -
             rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
         const real rus_J_3_in_spec3_xz = rus_link3_inertia_xz -
             rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
-        const real rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_4 -
-            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 -
+            rus_J_3_t_4);
         const real rus_J_3_in_spec3_yz = rus_link3_inertia_yz -
             rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
-        const real rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_5 -
-            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 -
+            rus_J_3_t_4);
+        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rus_Kd_1_t = R(0.5)*rus_size_t;
+        const real rus_Kd_1_t_2 = R(0.5)*rus_size_t_2;
         /* (rus-rho2_1) squared amplitude */
         const real rus_rho2_1_t = rus_size*rus_size*rus_size_t_3;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = 1/rus_size_t;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = 1/rus_size_t_2;
         /* (rus-w_3) reciprocal vector 3 */
         const real rus_w_3_in_axes3_y = 1/rus_platform_joint_offset_x;
         /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
@@ -852,8 +856,8 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         KEEP_OF_LEG(rus_J_3_in_spec3_xz);
         KEEP_OF_LEG(rus_J_3_in_spec3_yz);
         KEEP_OF_LEG(rus_J_3_in_spec3_zz);
-        KEEP_OF_LEG(rus_J_3_t);
-        KEEP_OF_LEG(rus_J_3_t_2);
+        KEEP_OF_LEG(rus_Kd_1_t);
+        KEEP_OF_LEG(rus_Kd_1_t_2);
         KEEP_OF_LEG(rus_Sigma_3_in_axes3_xx);
         KEEP_OF_LEG(rus_Sigma_3_in_axes3_yy);
         KEEP_OF_LEG(rus_Sigma_3_in_axes3_zz);
@@ -1650,30 +1654,30 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real rus_q_x, rus_q_y, rus_q_z, rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17,
-        rus_e_1_in_axes3_x, rus_c_1, rus_s_1, rus_c_2, rus_s_2_t, rus_r_1_in_axes3_z,
-        rus_d_2_in_axes3_x, rus_r_1_in_axes3_y, rus_v_1_t, rus_v_1_t_2, rus_v_1_in_axes3_z,
-        rus_v_2_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
-        axis_y_rus_axes3_x, axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x,
-        axis_x_rus_axes3_y, axis_x_rus_axes3_z, inv_rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
-        rus_w_2_in_axes3_z, rus_g_in_axes3_x, rus_g_in_axes3_y, rus_g_in_axes3_z, rus_d_Gamma_2_t_2,
-        rus_g_in_axes1_x, rus_g_in_axes1_y, rus_mu_1_t_3, rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z,
-        rus_S_dot_t, rus_S_dot_t_2, rus_S_dot_t_3, rus_qd_1_t, rus_qd_2, rus_qd_3,
-        rus_W_3_in_axes3_yz, rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x,
-        rus_bias_in_axes3_y, rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t,
-        rus_c_t_2, rus_c_t_3, rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z,
-        rus_qdd_1_t, rus_qdd_2, rus_qdd_3_t, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2,
-        rus_Z_a_t_3, rus_Q_xx, rus_Q_yy, rus_Q_t_13, rus_Q_xy, rus_Q_xz, rus_Q_yz, rus_M_ta_t,
-        rus_M_ta_t_2, rus_M_ta_t_3, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_7, rus_M_ta_t_8,
-        rus_M_ta_t_9, rus_M_aa_t, rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5,
-        rus_M_aa_t_6, rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z,
-        rus_c_in_axes3_x, rus_c_in_axes3_y, rus_c_in_axes3_z;
+    real rus_q_x, rus_q_y, rus_q_z, rus_rho2_1, rus_disc_1, rus_c_1, rus_s_1, rus_rho2_2, rus_c_2,
+        rus_s_2_t, rus_c_3, rus_e_1_in_axes3_x, rus_r_1_in_axes3_z, rus_d_2_in_axes3_x,
+        rus_r_1_in_axes3_y, rus_v_1_t, rus_v_1_t_2, rus_v_1_in_axes3_z, rus_v_2_in_axes3_z,
+        axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x,
+        axis_y_rus_axes3_y, axis_y_rus_axes3_z, axis_x_rus_axes3_x, axis_x_rus_axes3_y,
+        axis_x_rus_axes3_z, inv_rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9, rus_w_2_in_axes3_z,
+        rus_g_in_axes3_x, rus_g_in_axes3_y, rus_g_in_axes3_z, rus_d_Gamma_2_t_2, rus_g_in_axes1_x,
+        rus_g_in_axes1_y, rus_mu_1_t_3, rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z, rus_S_dot_t,
+        rus_S_dot_t_2, rus_S_dot_t_3, rus_qd_1_t, rus_qd_2, rus_qd_3, rus_W_3_in_axes3_yz,
+        rus_W_3_in_axes3_xz, rus_W_3_in_axes3_xy, rus_bias_in_axes3_x, rus_bias_in_axes3_y,
+        rus_bias_in_axes3_z, rus_mu_3_t_4, rus_mu_3_t_5, rus_mu_3_t_6, rus_c_t, rus_c_t_2, rus_c_t_3,
+        rus_S_ddot_in_axes3_x, rus_S_ddot_in_axes3_y, rus_S_ddot_in_axes3_z, rus_qdd_1_t, rus_qdd_2,
+        rus_qdd_3_t, rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3, rus_Q_xx,
+        rus_Q_yy, rus_Q_t_13, rus_Q_xy, rus_Q_xz, rus_Q_yz, rus_M_ta_t, rus_M_ta_t_2, rus_M_ta_t_3,
+        rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_7, rus_M_ta_t_8, rus_M_ta_t_9, rus_M_aa_t,
+        rus_M_aa_t_2, rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6, rus_acc_3_in_axes3_x,
+        rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x, rus_c_in_axes3_y,
+        rus_c_in_axes3_z;
 } values_rus;
 
 INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
     *X, values_rus *v)
 {
-    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    /* (rus-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1690,53 +1694,65 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->rus_q_z = R_zx*m->rus_platform_point_x[i] + R_zy*m->rus_platform_point_y[i] +
         R_zz*m->rus_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rus_J_3_t_3 = t_x - m->rus_base_point_x[i] + v->rus_q_x;
+    const real rus_S_x = t_x - m->rus_base_point_x[i] + v->rus_q_x;
     const real t_y = X[1*w + j];
-    const real rus_J_3_t_4 = t_y - m->rus_base_point_y[i] + v->rus_q_y;
+    const real rus_S_y = t_y - m->rus_base_point_y[i] + v->rus_q_y;
     const real t_z = X[2*w + j];
-    const real rus_J_3_t_5 = t_z - m->rus_base_point_z[i] + v->rus_q_z;
-    const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
-        rus_J_3_t_5*rus_J_3_t_5;
-    const real rus_J_3_t_7 = m->rus_J_3_t[i] - m->rus_J_3_t_2[i] + R(0.5)*rus_J_3_t_6;
-    const real rus_J_3_t_8 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xx[i] +
-        rus_J_3_t_4*m->rus_base_frame_yx[i] + rus_J_3_t_5*m->rus_base_frame_zx[i]);
-    const real rus_J_3_t_9 = m->rus_joint2_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xy[i] +
-        rus_J_3_t_4*m->rus_base_frame_yy[i] + rus_J_3_t_5*m->rus_base_frame_zy[i]);
-    v->rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
-    v->rus_J_3_t_11 = v->rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
-    const real rus_J_3_t_12 = root(v->rus_J_3_t_11)*m->rus_branch_1[i];
-    const real rus_J_3_t_13 = m->inv_rus_size_t[i]*rus_J_3_t_12*m->rus_joint2_offset_x[i];
-    const real rus_J_3_t_14 = m->inv_rus_size_t[i]*rus_J_3_t_7*m->rus_joint2_offset_x[i] -
-        m->rus_joint2_offset_x[i];
-    v->rus_J_3_t_15 = rus_J_3_t_14*rus_J_3_t_14 + rus_J_3_t_13*rus_J_3_t_13;
-    const real rus_J_3_t_16 = root(v->rus_J_3_t_15)*m->rus_branch_2[i];
-    v->rus_J_3_t_17 = m->inv_rus_size_t_2[i]*rus_J_3_t_16*m->rus_platform_joint_offset_x[i];
-    v->rus_e_1_in_axes3_x =
-        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_J_3_t_3*m->rus_base_frame_xz[i]
-        + rus_J_3_t_4*m->rus_base_frame_yz[i] + rus_J_3_t_5*m->rus_base_frame_zz[i]);
+    const real rus_S_z = t_z - m->rus_base_point_z[i] + v->rus_q_z;
+    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
+    const real rus_Kd_1 = m->rus_Kd_1_t[i] - m->rus_Kd_1_t_2[i] + R(0.5)*rus_Kd_1_t_3;
+    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rus_Kc_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xx[i] +
+        rus_S_y*m->rus_base_frame_yx[i] + rus_S_z*m->rus_base_frame_zx[i]);
+    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rus_Ks_1 = m->rus_joint2_offset_x[i]*(rus_S_x*m->rus_base_frame_xy[i] +
+        rus_S_y*m->rus_base_frame_yy[i] + rus_S_z*m->rus_base_frame_zy[i]);
+    /* (rus-rho2_1) squared amplitude */
+    v->rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
+    /* (rus-disc_1) discriminant */
+    v->rus_disc_1 = v->rus_rho2_1 - rus_Kd_1*rus_Kd_1;
+    /* (rus-root_1) root, with the sign of the branch */
+    const real rus_root_1 = m->rus_branch_1[i]*root(v->rus_disc_1);
     /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rus_J_3_t_10 = 1/v->rus_J_3_t_10;
-    v->rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9);
+    const real inv_rus_rho2_1 = 1/v->rus_rho2_1;
+    v->rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
     /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_9 + rus_J_3_t_12*rus_J_3_t_8);
+    v->rus_s_1 = inv_rus_rho2_1*(rus_Kd_1*rus_Ks_1 + rus_Kc_1*rus_root_1);
+    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+    const real rus_xi_1_t = m->inv_rus_size_t[i]*m->rus_joint2_offset_x[i]*rus_root_1;
+    /* (rus-x_2) from the origin of joint 2 to the connection point */
+    const real rus_x_2_in_axes1_x = m->inv_rus_size_t[i]*rus_Kd_1*m->rus_joint2_offset_x[i] -
+        m->rus_joint2_offset_x[i];
+    /* (rus-rho2_2) squared amplitude */
+    v->rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+    /* (rus-root_2) root, with the sign of the branch */
+    const real rus_root_2 = m->rus_branch_2[i]*root(v->rus_rho2_2);
     /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_rus_J_3_t_15 = 1/v->rus_J_3_t_15;
-    v->rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
+    const real inv_rus_rho2_2 = 1/v->rus_rho2_2;
+    v->rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
     /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-    v->rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
+    v->rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+    v->rus_c_3 = m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*rus_root_2;
+    /* (rus-q_3) displacement of joint 3 */
+    v->rus_e_1_in_axes3_x =
+        m->inv_rus_size_t_2[i]*m->rus_platform_joint_offset_x[i]*(rus_S_x*m->rus_base_frame_xz[i]
+        + rus_S_y*m->rus_base_frame_yz[i] + rus_S_z*m->rus_base_frame_zz[i]);
     /* (rus-r_1) from joint 1 to the connection point, along the links */
     const real rus_r_1_t = v->rus_c_2*m->rus_joint2_offset_x[i];
     v->rus_r_1_in_axes3_z = m->rus_joint2_offset_x[i]*v->rus_s_2_t;
-    v->rus_d_2_in_axes3_x = v->rus_J_3_t_17*rus_r_1_t;
+    v->rus_d_2_in_axes3_x = v->rus_c_3*rus_r_1_t;
     v->rus_r_1_in_axes3_y = v->rus_e_1_in_axes3_x*rus_r_1_t;
     const real rus_r_1_in_axes3_x = m->rus_platform_joint_offset_x[i] + v->rus_d_2_in_axes3_x;
     /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-    v->rus_v_1_t = v->rus_J_3_t_17*v->rus_r_1_in_axes3_z;
+    v->rus_v_1_t = v->rus_c_3*v->rus_r_1_in_axes3_z;
     v->rus_v_1_t_2 = v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_z;
     v->rus_v_1_in_axes3_z = v->rus_e_1_in_axes3_x*v->rus_r_1_in_axes3_y +
-        v->rus_J_3_t_17*rus_r_1_in_axes3_x;
+        v->rus_c_3*rus_r_1_in_axes3_x;
     /* (rus-v_2) velocity of the connection point per rate of joint 2 */
-    v->rus_v_2_in_axes3_z = v->rus_J_3_t_17*m->rus_platform_joint_offset_x[i];
+    v->rus_v_2_in_axes3_z = v->rus_c_3*m->rus_platform_joint_offset_x[i];
     /* (rus-w_1) reciprocal vector 1 */
     const real rus_w_1_t = v->rus_c_1*v->rus_s_2_t - v->rus_c_2*v->rus_s_1;
     const real rus_w_1_t_2 = v->rus_c_1*v->rus_c_2 + v->rus_s_1*v->rus_s_2_t;
@@ -1751,11 +1767,11 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     const real rus_w_1_t_5 = v->rus_c_1*rus_w_1_t_3 + v->rus_s_1*rus_w_1_t_4;
     const real rus_w_1_t_6 = v->rus_s_1*rus_w_1_t_3 - v->rus_c_1*rus_w_1_t_4;
     v->axis_y_rus_axes3_x = m->rus_base_frame_xx[i]*rus_w_1_t_5 -
-        v->rus_J_3_t_17*m->rus_base_frame_xz[i] + m->rus_base_frame_xy[i]*rus_w_1_t_6;
+        m->rus_base_frame_xz[i]*v->rus_c_3 + m->rus_base_frame_xy[i]*rus_w_1_t_6;
     v->axis_y_rus_axes3_y = m->rus_base_frame_yx[i]*rus_w_1_t_5 -
-        v->rus_J_3_t_17*m->rus_base_frame_yz[i] + m->rus_base_frame_yy[i]*rus_w_1_t_6;
+        m->rus_base_frame_yz[i]*v->rus_c_3 + m->rus_base_frame_yy[i]*rus_w_1_t_6;
     v->axis_y_rus_axes3_z = m->rus_base_frame_zx[i]*rus_w_1_t_5 -
-        v->rus_J_3_t_17*m->rus_base_frame_zz[i] + m->rus_base_frame_zy[i]*rus_w_1_t_6;
+        m->rus_base_frame_zz[i]*v->rus_c_3 + m->rus_base_frame_zy[i]*rus_w_1_t_6;
     v->axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
         v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
     v->axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
@@ -1778,7 +1794,7 @@ INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     v->rus_d_Gamma_2_t_2 = v->rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_z[i] -
-        v->rus_J_3_t_17*m->rus_h_3_in_spec3_x[i];
+        v->rus_c_3*m->rus_h_3_in_spec3_x[i];
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     v->rus_g_in_axes1_x = v->rus_c_1*m->rus_mu_1_t[i] + m->rus_mu_1_t_2[i]*v->rus_s_1;
     v->rus_g_in_axes1_y = v->rus_c_1*m->rus_mu_1_t_2[i] - m->rus_mu_1_t[i]*v->rus_s_1;
@@ -1820,11 +1836,11 @@ INLINE void stage_rus_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rus_qd_3 = rus_qd_3_t*m->rus_w_3_in_axes3_y[i];
     /* (rus-omega_1) angular velocity of link 1 */
     const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*v->rus_qd_1_t;
-    const real rus_omega_1_in_axes3_y = v->rus_J_3_t_17*v->rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v->rus_c_3*v->rus_qd_1_t;
     /* (rus-omega_2) angular velocity of link 2 */
     const real rus_omega_2_in_axes2_z = v->rus_qd_2 - v->rus_qd_1_t;
     const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-    const real rus_omega_2_in_axes3_y = -v->rus_J_3_t_17*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v->rus_c_3*rus_omega_2_in_axes2_z;
     /* (rus-W_3) centripetal tensor of link 3 */
     v->rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*v->rus_qd_3;
     v->rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*v->rus_qd_3;
@@ -1927,7 +1943,7 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real rus_alpha_2_o_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
         rus_qdd_1_o_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
     const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v->rus_e_1_in_axes3_x;
-    const real rus_alpha_2_o_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
+    const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v->rus_c_3;
     /* (rus-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real rus_alpha_3_o_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
     const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - v->rus_W_3_in_axes3_xz;
@@ -1961,7 +1977,7 @@ INLINE void stage_rus_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         rus_B_3_o_in_axes3_xy*m->rus_Sigma_3_in_axes3_yy[i] -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_o_in_axes3_y;
     const real rus_mu_3_o_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
-        v->rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
+        v->rus_c_3*rus_mu_3_o_in_axes3_y;
     /* (rus-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rus_mu_1_o_in_axes1_z = -v->rus_mu_1_t_3 -
@@ -2002,19 +2018,19 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
 {
     /* (rus-J_3) inertia tensor of link 3 about the connection point */
     const real rus_J_3_in_axes2_yz = m->rus_J_3_in_spec3_xy[i]*v->rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_yz[i]*v->rus_J_3_t_17;
+        m->rus_J_3_in_spec3_yz[i]*v->rus_c_3;
     const real rus_J_3_in_axes1_zz =
-        v->rus_J_3_t_17*(m->rus_J_3_in_spec3_xz[i]*v->rus_e_1_in_axes3_x +
-        m->rus_J_3_in_spec3_zz[i]*v->rus_J_3_t_17) -
+        v->rus_c_3*(m->rus_J_3_in_spec3_xz[i]*v->rus_e_1_in_axes3_x +
+        m->rus_J_3_in_spec3_zz[i]*v->rus_c_3) -
         v->rus_e_1_in_axes3_x*(-m->rus_J_3_in_spec3_xx[i]*v->rus_e_1_in_axes3_x -
-        m->rus_J_3_in_spec3_xz[i]*v->rus_J_3_t_17);
+        m->rus_J_3_in_spec3_xz[i]*v->rus_c_3);
     /* (rus-w_2) reciprocal vector 2 */
     const real rus_w_2_in_axes3_x =
         v->inv_rus_v_1_t*v->rus_v_1_in_axes3_z*v->rus_w_2_in_axes3_z;
     /* (rus-w_3) reciprocal vector 3 */
     const real rus_w_3_t = v->inv_rus_v_1_t*v->rus_v_1_t_2*m->rus_w_3_in_axes3_y[i];
     /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-    const real rus_d_alpha_3_t = v->rus_J_3_t_17*v->rus_w_2_in_axes3_z;
+    const real rus_d_alpha_3_t = v->rus_c_3*v->rus_w_2_in_axes3_z;
     /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*v->rus_w_2_in_axes3_z;
@@ -2023,7 +2039,7 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
         rus_d_Gamma_3_in_axes3_z*v->rus_v_1_in_axes3_z);
     /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real rus_d_Gamma_2_t = v->rus_J_3_t_17*m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_t = v->rus_c_3*m->rus_h_3_in_spec3_y[i];
     const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*v->rus_w_2_in_axes3_z;
     const real rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*m->rus_w_3_in_axes3_y[i];
     const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*v->rus_v_1_in_axes3_z;
@@ -2046,8 +2062,8 @@ INLINE void stage_rus_M_dynamics(const prepared *m, size_t i, values_rus *v)
     const real rus_d_c_in_axes3_xx = rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
         m->rus_h_3_in_spec3_z[i]*rus_w_3_t + v->inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x -
         rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t*v->rus_J_3_t_17 -
-        v->rus_J_3_t_17*rus_w_2_in_axes3_x);
+        m->rus_h_3_in_spec3_y[i]*(v->inv_rus_v_1_t*v->rus_c_3 -
+        v->rus_c_3*rus_w_2_in_axes3_x);
     const real rus_d_c_in_axes3_xy = v->inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y -
         m->rus_d_phi_3_in_axes3_xy[i] + m->rus_d_Gamma_3_in_axes3_y[i]*rus_w_3_t -
         rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
@@ -2111,7 +2127,7 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
     /* (rus-alpha_2) angular acceleration of link 2 */
     const real rus_alpha_2_in_axes2_z = v->rus_qdd_2 - v->rus_qdd_1_t;
     const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
-    const real rus_alpha_2_in_axes3_y = -v->rus_J_3_t_17*rus_alpha_2_in_axes2_z;
+    const real rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*v->rus_c_3;
     /* (rus-alpha_3) angular acceleration of link 3 */
     const real rus_alpha_3_in_axes3_x = v->rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
     const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - v->rus_W_3_in_axes3_xz;
@@ -2144,7 +2160,7 @@ INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
         m->rus_J_3_in_spec3_xy[i]*rus_alpha_2_in_axes3_x -
         m->rus_J_3_in_spec3_yz[i]*rus_alpha_2_in_axes3_y;
     const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
-        v->rus_J_3_t_17*rus_mu_3_in_axes3_y;
+        v->rus_c_3*rus_mu_3_in_axes3_y;
     /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rus_mu_1_in_axes1_z = -v->rus_mu_1_t_3 -
         m->rus_J_1_in_spec1_zz[i]*v->rus_qdd_1_t;
@@ -2259,8 +2275,8 @@ INLINE void any_entries_rus(size_t k, size_t count, const values_rus *v, real *o
 
 INLINE void any_singular_rus(const prepared *m, size_t i, size_t k, const values_rus *v, real *o)
 {
-    o[k] = UNLESS(magnitude(v->rus_J_3_t_10) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) +
-        UNLESS(magnitude(v->rus_J_3_t_15) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+    o[k] = UNLESS(magnitude(v->rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) +
+        UNLESS(magnitude(v->rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
         UNLESS(magnitude(v->rus_v_2_in_axes3_z) > TOLERANCE*m->rus_size[i]) +
         UNLESS(magnitude(v->rus_v_1_t) > TOLERANCE*m->rus_size[i]);
 }
@@ -2340,7 +2356,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     any_sums_rus(k, count, add, &v, terms);
     any_sums_rus_2(k, count, add, &v, terms + 20*count);
     any_entries_rus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 7*count);
     o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
@@ -2530,7 +2546,7 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rus_X(m, w, i, j, s, X, &v);
     stage_rus_M_dynamics(m, i, &v);
     any_sums_rus(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 1*count);
 }
 
@@ -2699,7 +2715,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_rus_V_X(m, w, i, j, V, &v);
     stage_rus_Z_dynamics(m, w, i, j, V, &v);
     any_sums_rus_2(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 1*count);
 }
 
@@ -2794,11 +2810,10 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_rus v;
     stage_rus_X(m, w, i, j, s, X, &v);
     any_entries_rus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-    o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) + UNLESS(magnitude(v.rus_v_1_t) >
-        TOLERANCE*m->rus_size[i]);
+    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]) +
+        UNLESS(magnitude(v.rus_v_1_t) > TOLERANCE*m->rus_size[i]);
     o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
         (v.rus_H_a_1_y + v.rus_H_a_1_z));
 }
@@ -2938,7 +2953,7 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, rus_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rus_R_a_t_3);  /* R_a_z_of_legs */
     any_entries_rus(k, count, &v, o);
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 7*count);
 }
 
@@ -3053,17 +3068,16 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t i, s
     /* (rus-q_2) displacement of joint 2 */
     const real rus_q_2 = angle(-v.rus_s_2_t, v.rus_c_2);
     /* (rus-q_3) displacement of joint 3 */
-    const real rus_q_3 = angle(-v.rus_e_1_in_axes3_x, v.rus_J_3_t_17);
+    const real rus_q_3 = angle(-v.rus_e_1_in_axes3_x, v.rus_c_3);
     /* (rus-q_1) */
     o[0*count + k] = rus_q_1;
     /* (rus-q_2) */
     o[1*count + k] = rus_q_2;
     /* (rus-q_3) */
     o[2*count + k] = rus_q_3;
-    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
     o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
 }
 
@@ -3130,7 +3144,7 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.rus_qd_2;
     /* (rus-qd_3) rate of joint 3 */
     o[2*count + k] = v.rus_qd_3;
-    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rus_qd_1_t + (v.rus_qd_2 + v.rus_qd_3);
 }
@@ -3200,7 +3214,7 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.rus_qdd_2;
     /* (rus-qdd_3) acceleration of joint 3 */
     o[2*count + k] = -v.rus_qdd_3_t;
-    o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rus_qdd_1_t + (v.rus_qdd_2 + v.rus_qdd_3_t);
 }
@@ -3289,7 +3303,7 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t i, size_t j, size_
     o[3*count + k] = -v.rus_w_1_t_7;
     o[4*count + k] = -v.rus_w_1_t_8;
     o[5*count + k] = -v.rus_w_1_t_9;
-    o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 7*count);
 }
 
@@ -3348,8 +3362,7 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     /* (potential) */
     const real rus_potential_t_4 = m->rus_g_in_axes1_z[i]*(m->rus_h_1_in_spec1_z[i] +
         m->rus_potential_t_3[i] + v.rus_e_1_in_axes3_x*m->rus_h_3_in_spec3_x[i] +
-        v.rus_J_3_t_17*m->rus_h_3_in_spec3_z[i]) +
-        v.rus_g_in_axes1_x*(m->rus_h_1_in_spec1_x[i] +
+        v.rus_c_3*m->rus_h_3_in_spec3_z[i]) + v.rus_g_in_axes1_x*(m->rus_h_1_in_spec1_x[i] +
         m->rus_link1_mass[i]*(v.rus_c_1*m->rus_potential_t[i] +
         m->rus_potential_t_2[i]*v.rus_s_1) + m->rus_h_3_in_spec3_y[i]*v.rus_s_2_t -
         v.rus_c_2*v.rus_d_Gamma_2_t_2) + v.rus_g_in_axes1_y*(m->rus_h_1_in_spec1_y[i] +
@@ -3358,10 +3371,9 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
         v.rus_d_Gamma_2_t_2*v.rus_s_2_t);
     /* (potential) */
     gather(&terms[0*count + k], add, rus_potential_t_4);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) >
-        TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i]) + UNLESS(magnitude(v.rus_J_3_t_15) >
-        TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
+    o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*m->rus_rho2_1_t[i])
+        + UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*m->rus_size_t_3[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3427,8 +3439,8 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     stage_rus_X(m, w, i, j, s, X, &v);
     /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rus_pivot_size = magnitude(v.rus_J_3_t_10);
-    const real rus_pivot_size_2 = magnitude(v.rus_J_3_t_15);
+    const real rus_pivot_size = magnitude(v.rus_rho2_1);
+    const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
     const real rus_pivot_size_3 = magnitude(v.rus_v_2_in_axes3_z);
     const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
     const real rus_least_pivots =
@@ -3446,11 +3458,11 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t i, size_t j, 
     any_entries_rus(k, count, &v, o);
     /* (rus-G) */
     o[6*count + k] = rus_least_pivots;
-    o[7*count + k] = v.rus_J_3_t_11;
-    o[8*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
+    o[7*count + k] = v.rus_disc_1;
+    o[8*count + k] = UNLESS(v.rus_disc_1 >= 0);
     any_singular_rus(m, i, k, &v, o + 9*count);
     o[10*count + k] = ((v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + v.rus_H_a_1_x)) +
-        ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_J_3_t_11));
+        ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_disc_1));
 }
 
 INLINE void condition_place_rus(size_t w, size_t i, size_t k, size_t at, size_t count, const real

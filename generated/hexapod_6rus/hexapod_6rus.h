@@ -106,7 +106,7 @@ typedef struct {
     hexapod_6rus_real inv_rus_rho2_1_t[8], inv_rus_size[8], inv_rus_size_t[8], inv_rus_size_t_2[8],
             inv_rus_size_t_3[8], rus_J_1_in_spec1_zz[8], rus_J_3_in_spec3_xx[8],
             rus_J_3_in_spec3_xy[8], rus_J_3_in_spec3_xz[8], rus_J_3_in_spec3_yz[8],
-            rus_J_3_in_spec3_zz[8], rus_J_3_t[8], rus_J_3_t_2[8], rus_Sigma_3_in_axes3_xx[8],
+            rus_J_3_in_spec3_zz[8], rus_Kd_1_t[8], rus_Kd_1_t_2[8], rus_Sigma_3_in_axes3_xx[8],
             rus_Sigma_3_in_axes3_yy[8], rus_Sigma_3_in_axes3_zz[8], rus_base_frame_xx[8],
             rus_base_frame_xy[8], rus_base_frame_xz[8], rus_base_frame_yx[8], rus_base_frame_yy[8],
             rus_base_frame_yz[8], rus_base_frame_zx[8], rus_base_frame_zy[8], rus_base_frame_zz[8],

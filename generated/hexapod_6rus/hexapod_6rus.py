@@ -591,28 +591,31 @@ def _prepare(p):
     rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass
     rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass
     # (rus-J_3) inertia tensor of link 3 about the connection point
-    rus_J_3_t = 0.5*rus_size_t
-    rus_J_3_t_2 = 0.5*rus_size_t_2
-    inv_rus_size_t = 1.0/rus_size_t
-    inv_rus_size_t_2 = 1.0/rus_size_t_2
-    rus_J_3_t_3 = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x
-    rus_J_3_t_4 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
-    rus_J_3_t_5 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
-    rus_J_3_t_6 = rus_J_3_t_3 + rus_J_3_t_4 + rus_J_3_t_5
-    rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_6)
+    rus_J_3_t = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x
+    rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
+    rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
+    rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3
+    rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t - rus_J_3_t_4)
     rus_J_3_in_spec3_xy = (
     rus_link3_inertia_xy - rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x
     )
     rus_J_3_in_spec3_xz = (
     rus_link3_inertia_xz - rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x
     )
-    rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_4 - rus_J_3_t_6)
+    rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 - rus_J_3_t_4)
     rus_J_3_in_spec3_yz = (
     rus_link3_inertia_yz - rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass
     )
-    rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_5 - rus_J_3_t_6)
+    rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_4)
+    # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rus_Kd_1_t = 0.5*rus_size_t
+    rus_Kd_1_t_2 = 0.5*rus_size_t_2
     # (rus-rho2_1) squared amplitude
     rus_rho2_1_t = rus_size*rus_size*rus_size_t_3
+    # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+    inv_rus_size_t = 1.0/rus_size_t
+    # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rus_size_t_2 = 1.0/rus_size_t_2
     # (rus-w_3) reciprocal vector 3
     rus_w_3_in_axes3_y = 1.0/rus_platform_joint_offset_x
     # (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -724,7 +727,7 @@ def _prepare(p):
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
                     rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz,
-                    rus_J_3_in_spec3_zz, rus_J_3_t, rus_J_3_t_2, rus_Sigma_3_in_axes3_xx,
+                    rus_J_3_in_spec3_zz, rus_Kd_1_t, rus_Kd_1_t_2, rus_Sigma_3_in_axes3_xx,
                     rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
@@ -746,7 +749,7 @@ def _prepare(p):
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
                     rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz,
-                    rus_J_3_in_spec3_zz, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+                    rus_J_3_in_spec3_zz, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -766,7 +769,7 @@ def _prepare(p):
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
                     rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -783,7 +786,7 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -801,7 +804,7 @@ def _prepare(p):
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
                     rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -818,7 +821,7 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -832,7 +835,7 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -846,7 +849,7 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -861,7 +864,7 @@ def _prepare(p):
             (
                 (_rus,
         (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
                     rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
                     rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
                     rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -880,7 +883,7 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_rus,
-        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
@@ -898,7 +901,7 @@ def _prepare(p):
             (
                 (_rus,
         (inv_rus_rho2_1_t, inv_rus_size, inv_rus_size_t, inv_rus_size_t_2, inv_rus_size_t_3,
-                    rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy,
+                    rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx, rus_base_frame_xy,
                     rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
                     rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
                     rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
@@ -2008,7 +2011,7 @@ def _run_dynamics(m, X, V):
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
             rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_in_spec3_zz,
-            rus_J_3_t, rus_J_3_t_2, rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy,
+            rus_Kd_1_t, rus_Kd_1_t_2, rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy,
             rus_Sigma_3_in_axes3_zz, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
@@ -2019,7 +2022,7 @@ def _run_dynamics(m, X, V):
             rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t,
             rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -2029,49 +2032,60 @@ def _run_dynamics(m, X, V):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
-        rus_J_3_in_axes2_yz = (
-        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_J_3_t_17
-        )
-        rus_J_3_in_axes1_zz = (
-        rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_J_3_t_17) -
-            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_J_3_t_17)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_in_axes2_yz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_c_3
+        rus_J_3_in_axes1_zz = (
+        rus_c_3*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_c_3) -
+            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_c_3)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -2082,17 +2096,15 @@ def _run_dynamics(m, X, V):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2104,16 +2116,13 @@ def _run_dynamics(m, X, V):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -2151,11 +2160,11 @@ def _run_dynamics(m, X, V):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -2204,9 +2213,9 @@ def _run_dynamics(m, X, V):
             rus_qdd_1_o_t
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
+        rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
+        rus_d_alpha_3_t = rus_c_3*rus_w_2_in_axes3_z
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -2258,7 +2267,7 @@ def _run_dynamics(m, X, V):
             rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
         rus_mu_3_o_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
         )
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
@@ -2267,10 +2276,8 @@ def _run_dynamics(m, X, V):
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = (
-        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
-        )
+        rus_d_Gamma_2_t = rus_c_3*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t_2 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
         rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
         rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
@@ -2307,7 +2314,7 @@ def _run_dynamics(m, X, V):
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
             rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_in_axes3_x)
         )
         rus_d_c_in_axes3_xy = (
         inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
@@ -2413,10 +2420,9 @@ def _run_dynamics(m, X, V):
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -2608,7 +2614,7 @@ def _run_M(m, X):
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
             rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_in_spec3_zz,
-            rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+            rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
             rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_in_axes3_y,
@@ -2617,7 +2623,7 @@ def _run_M(m, X):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -2627,63 +2633,72 @@ def _run_M(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
-        rus_J_3_in_axes2_yz = (
-        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_J_3_t_17
-        )
-        rus_J_3_in_axes1_zz = (
-        rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_J_3_t_17) -
-            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_J_3_t_17)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_J_3_in_axes2_yz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_c_3
+        rus_J_3_in_axes1_zz = (
+        rus_c_3*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_c_3) -
+            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_c_3)
+        )
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -2695,16 +2710,13 @@ def _run_M(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -2722,7 +2734,7 @@ def _run_M(m, X):
         # (rus-w_3) reciprocal vector 3
         rus_w_3_t = inv_rus_v_1_t*rus_v_1_t_2*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
+        rus_d_alpha_3_t = rus_c_3*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
@@ -2730,10 +2742,8 @@ def _run_M(m, X):
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
-        rus_d_Gamma_2_t_2 = (
-        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
-        )
+        rus_d_Gamma_2_t = rus_c_3*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t_2 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
         rus_d_Gamma_2_t_3 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
         rus_d_Gamma_2_t_4 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_z
@@ -2755,7 +2765,7 @@ def _run_M(m, X):
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
             rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x)
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_in_axes3_x)
         )
         rus_d_c_in_axes3_xy = (
         inv_rus_v_1_t*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
@@ -2826,10 +2836,9 @@ def _run_M(m, X):
         rus_M_aa_t_5 = rus_M_ta_t_2*rus_q_z + rus_M_ta_t_9*rus_q_x
         rus_M_aa_t_6 = rus_M_ta_t_2*rus_q_y + rus_M_ta_t_6*rus_q_x
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (M_tt) translational block of M
         M_tt_rus_xx += rus_Q_xx
@@ -3011,7 +3020,7 @@ def _run_Z(m, X, V):
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
             rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
             rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
             rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -3021,7 +3030,7 @@ def _run_Z(m, X, V):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3031,41 +3040,53 @@ def _run_Z(m, X, V):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -3076,17 +3097,15 @@ def _run_Z(m, X, V):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3098,16 +3117,13 @@ def _run_Z(m, X, V):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3139,11 +3155,11 @@ def _run_Z(m, X, V):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -3192,7 +3208,7 @@ def _run_Z(m, X, V):
             rus_qdd_1_o_t
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
+        rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
         # (rus-alpha_3_o) remainder of: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3244,7 +3260,7 @@ def _run_Z(m, X, V):
             rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
         rus_mu_3_o_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
         )
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
@@ -3293,10 +3309,9 @@ def _run_Z(m, X, V):
         rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x
         rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (Z_t) translational part of Z
         Z_t_rus_x += rus_U_x
@@ -3368,14 +3383,14 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3385,45 +3400,57 @@ def _run_H(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3435,16 +3462,13 @@ def _run_H(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3464,8 +3488,8 @@ def _run_H(m, X):
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_1_t) >
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_1_t) >
             _TOLERANCE * rus_size)
         )
         # (rus-w_1) reciprocal vector 1
@@ -3622,7 +3646,7 @@ def _run_required(m, X, V, A):
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
             rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
             rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
             rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -3632,7 +3656,7 @@ def _run_required(m, X, V, A):
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -3642,41 +3666,53 @@ def _run_required(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -3687,17 +3723,15 @@ def _run_required(m, X, V, A):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -3709,16 +3743,13 @@ def _run_required(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3753,11 +3784,11 @@ def _run_required(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -3808,7 +3839,7 @@ def _run_required(m, X, V, A):
         # (rus-alpha_2) angular acceleration of link 2
         rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
+        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3855,9 +3886,7 @@ def _run_required(m, X, V, A):
             rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
             rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
-        )
+        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
         rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
@@ -3906,10 +3935,9 @@ def _run_required(m, X, V, A):
         rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
         rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rus_c_x
@@ -3990,14 +4018,14 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4007,50 +4035,61 @@ def _run_inverse_kinematics(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-q_1) displacement of joint 1
         rus_q_1 = atan2(rus_s_1, rus_c_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-q_2) displacement of joint 2
         rus_q_2 = atan2(-rus_s_2_t, rus_c_2)
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-q_3) displacement of joint 3
-        rus_q_3 = atan2(-rus_e_1_in_axes3_x, rus_J_3_t_17)
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_q_3 = atan2(-rus_e_1_in_axes3_x, rus_c_3)
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (rus-q_1) displacement of joint 1
         out_q[_q_rus[0][leg]] = rus_q_1
@@ -4117,7 +4156,7 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
@@ -4125,7 +4164,7 @@ def _run_joint_rates(m, X, V):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4135,41 +4174,53 @@ def _run_joint_rates(m, X, V):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -4180,17 +4231,15 @@ def _run_joint_rates(m, X, V):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4202,16 +4251,13 @@ def _run_joint_rates(m, X, V):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -4242,10 +4288,9 @@ def _run_joint_rates(m, X, V):
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-qd_1) rate of joint 1
         out_qd[_qd_rus[0][leg]] = -rus_qd_1_t
@@ -4342,7 +4387,7 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
@@ -4350,7 +4395,7 @@ def _run_joint_accelerations(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4360,41 +4405,53 @@ def _run_joint_accelerations(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -4405,17 +4462,15 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4427,16 +4482,13 @@ def _run_joint_accelerations(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -4468,11 +4520,11 @@ def _run_joint_accelerations(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         # (rus-S_ddot) acceleration of the connection point
@@ -4519,10 +4571,9 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-qdd_3) acceleration of joint 3
         rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_2 - rus_rel_in_axes3_y)
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1_t
@@ -4622,7 +4673,7 @@ def _run_legs(m, X, V, A):
     for leg, k in legs[0]:
         (
         inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
-            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_Kd_1_t, rus_Kd_1_t_2,
             rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
             rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
             rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
@@ -4633,7 +4684,7 @@ def _run_legs(m, X, V, A):
             rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
             rus_w_3_in_axes3_y,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4643,41 +4694,53 @@ def _run_legs(m, X, V, A):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-S_dot) velocity of the connection point
         rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
         rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
@@ -4688,17 +4751,15 @@ def _run_legs(m, X, V, A):
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_t = rus_c_2*rus_joint2_offset_x
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
-        rus_d_2_in_axes3_x = rus_J_3_t_17*rus_r_1_t
+        rus_d_2_in_axes3_x = rus_c_3*rus_r_1_t
         rus_r_1_in_axes3_y = rus_e_1_in_axes3_x*rus_r_1_t
         rus_r_1_in_axes3_x = rus_d_2_in_axes3_x + rus_platform_joint_offset_x
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         rus_v_1_t_2 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_z = (
-        rus_J_3_t_17*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
-        )
+        rus_v_1_in_axes3_z = rus_c_3*rus_r_1_in_axes3_x + rus_e_1_in_axes3_x*rus_r_1_in_axes3_y
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -4710,16 +4771,13 @@ def _run_legs(m, X, V, A):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -4754,11 +4812,11 @@ def _run_legs(m, X, V, A):
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
         rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
-        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = rus_qd_2 - rus_qd_1_t
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -4809,7 +4867,7 @@ def _run_legs(m, X, V, A):
         # (rus-alpha_2) angular acceleration of link 2
         rus_alpha_2_in_axes2_z = rus_qdd_2 - rus_qdd_1_t
         rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_in_axes2_z
+        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -4856,9 +4914,7 @@ def _run_legs(m, X, V, A):
             rus_mu_3_t_6 - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy -
             rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_J_3_t_17*rus_mu_3_in_axes3_y
-        )
+        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
         rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
@@ -4903,10 +4959,9 @@ def _run_legs(m, X, V, A):
             axis_z_rus_axes3_z*rus_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
-            (abs(rus_v_2_in_axes3_z) > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE *
-            rus_size)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_x
@@ -4976,7 +5031,7 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
@@ -4986,7 +5041,7 @@ def _run_potential(m, X):
             rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_potential_t,
             rus_potential_t_2, rus_potential_t_3, rus_rho2_1_t, rus_size_t_3,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -4996,45 +5051,55 @@ def _run_potential(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
-        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t_2 = (
-        rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_J_3_t_17*rus_h_3_in_spec3_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
         )
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t_2 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_g_in_axes1_x = rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1
         rus_g_in_axes1_y = rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1
@@ -5045,12 +5110,12 @@ def _run_potential(m, X):
             rus_c_2*rus_d_Gamma_2_t_2) + rus_g_in_axes1_y*(rus_h_1_in_spec1_y +
             rus_c_2*rus_h_3_in_spec3_y + rus_d_Gamma_2_t_2*rus_s_2_t +
             rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1)) +
-            rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
-            rus_J_3_t_17*rus_h_3_in_spec3_z + rus_e_1_in_axes3_x*rus_h_3_in_spec3_x)
+            rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_c_3*rus_h_3_in_spec3_z
+            + rus_e_1_in_axes3_x*rus_h_3_in_spec3_x)
         )
         ok = (
-        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
-            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
+        ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3)
         )
         # (potential) potential energy
         potential_t_2 += rus_potential_t_4
@@ -5115,14 +5180,14 @@ def _run_condition(m, X):
     for leg, k in legs[0]:
         (
         inv_rus_rho2_1_t, inv_rus_size, inv_rus_size_t, inv_rus_size_t_2, inv_rus_size_t_3,
-            rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+            rus_Kd_1_t, rus_Kd_1_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
             rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
             rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
-        # (rus-J_3) inertia tensor of link 3 about the connection point
+        # (rus-S) from the base point to the connection point
         rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
@@ -5132,47 +5197,59 @@ def _run_condition(m, X):
         rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
-        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
-        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
-        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
-        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
-        rus_J_3_t_8 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx)
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
+        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+        rus_Kd_1_t_3 = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
+        rus_Kd_1 = rus_Kd_1_t + 0.5*rus_Kd_1_t_3 - rus_Kd_1_t_2
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = (
-        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy)
+        # (rus-Ks_1) factor of the sine in the equation of joint 1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
         )
-        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
-        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
-        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
-        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
-        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = (
-        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
-            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
-        )
+        # (rus-rho2_1) squared amplitude
+        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
+        # (rus-disc_1) discriminant
+        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
+        # (rus-root_1) root, with the sign of the branch
+        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
-        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
+        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
+        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
-        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-q_3) displacement of joint 3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
         # (rus-r_1) from joint 1 to the connection point, along the links
         rus_r_1_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_J_3_t_17*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         # (rus-v_2) velocity of the connection point per rate of joint 2
-        rus_v_2_in_axes3_z = rus_J_3_t_17*rus_platform_joint_offset_x
+        rus_v_2_in_axes3_z = rus_c_3*rus_platform_joint_offset_x
         # (rus-w_1) reciprocal vector 1
         rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
         rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
@@ -5184,16 +5261,13 @@ def _run_condition(m, X):
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_xz
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_yz
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
-            rus_J_3_t_17*rus_base_frame_zz
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -5209,8 +5283,8 @@ def _run_condition(m, X):
         rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t
         rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rus_pivot_size = abs(rus_J_3_t_10)
-        rus_pivot_size_2 = abs(rus_J_3_t_15)
+        rus_pivot_size = abs(rus_rho2_1)
+        rus_pivot_size_2 = abs(rus_rho2_2)
         rus_pivot_size_3 = abs(rus_v_2_in_axes3_z)
         rus_pivot_size_4 = abs(rus_v_1_t)
         rus_least_pivots = (
@@ -5229,11 +5303,11 @@ def _run_condition(m, X):
         rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
         )
         clear = (
-        clear & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_J_3_t_15)
-            > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z) > _TOLERANCE *
+        clear & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (abs(rus_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_v_2_in_axes3_z) > _TOLERANCE *
             rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
-        reached = reached & (rus_J_3_t_11 >= 0.0)
+        reached = reached & (rus_disc_1 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rus += rus_spread_t_4
         # (rus-w_1) reciprocal vector 1
@@ -5246,7 +5320,7 @@ def _run_condition(m, X):
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
-        out_reach[_reach_rus[0][leg]] = rus_J_3_t_11
+        out_reach[_reach_rus[0][leg]] = rus_disc_1
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rus)*spread_t
     # (spread) rms distance of the platform points from their centroid

@@ -1621,18 +1621,18 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real ucu_q_x, ucu_q_y, ucu_q_z, ucu_h_4_t_7, ucu_h_4_t_9, ucu_h_4_t_10, ucu_h_4_t_11,
-        ucu_h_4_t_12, inv_ucu_h_4_t_12, ucu_h_4_t_13, ucu_e_1_in_axes4_z, ucu_h_4_t_19,
-        ucu_e_2_in_axes4_x, ucu_e_2_in_axes4_y, ucu_h_4_in_axes1_y, ucu_h_4_in_spec2_z, ucu_v_1_t,
-        ucu_e_1_in_axes4_y, ucu_v_1_in_axes2_z, ucu_v_1_t_2, ucu_n_m1_in_axes4_x, axis_z_ucu_axes4_x,
-        axis_z_ucu_axes4_y, axis_z_ucu_axes4_z, axis_y_ucu_axes4_x, axis_y_ucu_axes4_y,
-        axis_y_ucu_axes4_z, axis_x_ucu_axes4_x, axis_x_ucu_axes4_y, axis_x_ucu_axes4_z,
-        ucu_end_p1_in_axes4_x, ucu_n_m1_in_axes2_z, ucu_n_m1_x, ucu_n_m1_y, ucu_n_m1_z,
-        inv_ucu_v_1_in_axes2_z, ucu_w_4_t, inv_ucu_end_p1_in_axes4_x, ucu_end_p1_in_axes4_y,
-        ucu_g_in_axes4_x, ucu_g_in_axes4_y, ucu_g_in_axes4_z, ucu_g_in_axes2_z, ucu_g_in_axes2_x,
-        ucu_g_in_axes2_y, ucu_mu_2_t_11, ucu_mu_2_t_12, ucu_mu_2_t_13, ucu_H_a_3_x, ucu_H_a_3_y,
-        ucu_H_a_3_z, ucu_etad_1_t, ucu_S_dot_t, ucu_S_dot_t_2, ucu_S_dot_t_3, ucu_S_dot_in_axes2_x,
-        ucu_qd_1, ucu_qd_2, ucu_qd_4_t, ucu_qd_4_t_2, ucu_omega_in_axes4_z, ucu_omega_1_in_axes2_x,
+    real ucu_q_x, ucu_q_y, ucu_q_z, ucu_root_1_t, ucu_c_1, ucu_s_1, ucu_root_2_t, ucu_root_2,
+        inv_ucu_root_2, ucu_c_2, ucu_e_1_in_axes4_z, ucu_root_4_t_6, ucu_c_4, ucu_e_2_in_axes4_y,
+        ucu_h_4_in_axes1_y, ucu_h_4_in_spec2_z, ucu_v_1_t, ucu_e_1_in_axes4_y, ucu_v_1_in_axes2_z,
+        ucu_v_1_t_2, ucu_n_m1_in_axes4_x, axis_z_ucu_axes4_x, axis_z_ucu_axes4_y, axis_z_ucu_axes4_z,
+        axis_y_ucu_axes4_x, axis_y_ucu_axes4_y, axis_y_ucu_axes4_z, axis_x_ucu_axes4_x,
+        axis_x_ucu_axes4_y, axis_x_ucu_axes4_z, ucu_end_p1_in_axes4_x, ucu_n_m1_in_axes2_z,
+        ucu_n_m1_x, ucu_n_m1_y, ucu_n_m1_z, inv_ucu_v_1_in_axes2_z, ucu_w_4_t,
+        inv_ucu_end_p1_in_axes4_x, ucu_end_p1_in_axes4_y, ucu_g_in_axes4_x, ucu_g_in_axes4_y,
+        ucu_g_in_axes4_z, ucu_g_in_axes2_z, ucu_g_in_axes2_x, ucu_g_in_axes2_y, ucu_mu_2_t_11,
+        ucu_mu_2_t_12, ucu_mu_2_t_13, ucu_H_a_3_x, ucu_H_a_3_y, ucu_H_a_3_z, ucu_etad_1_t,
+        ucu_S_dot_t, ucu_S_dot_t_2, ucu_S_dot_t_3, ucu_S_dot_in_axes2_x, ucu_qd_1, ucu_qd_2,
+        ucu_qd_4_t, ucu_qd_4_t_2, ucu_omega_in_axes4_z, ucu_omega_1_in_axes2_x,
         ucu_omega_2_in_axes4_x, ucu_omega_2_in_axes4_y, ucu_W_2_in_axes2_yz, ucu_W_2_in_axes2_xz,
         ucu_W_2_in_axes2_xy, ucu_W_2_t, ucu_W_2_t_2, ucu_W_2_in_axes4_xy, ucu_W_2_t_3, ucu_zeta_2_t,
         ucu_bias_in_axes4_x, ucu_bias_in_axes4_y, ucu_nd_m1_t, ucu_nu_1_t, ucu_nu_1_t_2, ucu_nu_1_t_4,
@@ -1650,7 +1650,7 @@ typedef struct {
 INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
     *X, values_ucu *v)
 {
-    /* (ucu-h_4) first moment of link 4 about the connection point */
+    /* (ucu-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1667,82 +1667,88 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->ucu_q_z = R_zx*m->ucu_platform_point_x[i] + R_zy*m->ucu_platform_point_y[i] +
         R_zz*m->ucu_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real ucu_h_4_t = t_x - m->ucu_base_point_x[i] + v->ucu_q_x;
+    const real ucu_S_x = t_x - m->ucu_base_point_x[i] + v->ucu_q_x;
     const real t_y = X[1*w + j];
-    const real ucu_h_4_t_2 = t_y - m->ucu_base_point_y[i] + v->ucu_q_y;
+    const real ucu_S_y = t_y - m->ucu_base_point_y[i] + v->ucu_q_y;
     const real t_z = X[2*w + j];
-    const real ucu_h_4_t_3 = t_z - m->ucu_base_point_z[i] + v->ucu_q_z;
-    const real ucu_h_4_t_4 = m->ucu_base_frame_xx[i]*ucu_h_4_t +
-        m->ucu_base_frame_yx[i]*ucu_h_4_t_2 + m->ucu_base_frame_zx[i]*ucu_h_4_t_3;
-    const real ucu_h_4_t_5 = m->ucu_base_frame_xy[i]*ucu_h_4_t +
-        m->ucu_base_frame_yy[i]*ucu_h_4_t_2 + m->ucu_base_frame_zy[i]*ucu_h_4_t_3;
-    const real ucu_h_4_t_6 = m->ucu_base_frame_xz[i]*ucu_h_4_t +
-        m->ucu_base_frame_yz[i]*ucu_h_4_t_2 + m->ucu_base_frame_zz[i]*ucu_h_4_t_3;
-    v->ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
-    const real ucu_h_4_t_8 = m->ucu_branch_1[i]*root(v->ucu_h_4_t_7);
-    const real inv_ucu_h_4_t_8 = 1/ucu_h_4_t_8;
-    v->ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4;
-    v->ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5;
-    v->ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + v->ucu_h_4_t_7;
-    v->ucu_h_4_t_12 = m->ucu_branch_2[i]*root(v->ucu_h_4_t_11);
-    v->inv_ucu_h_4_t_12 = 1/v->ucu_h_4_t_12;
-    v->ucu_h_4_t_13 = v->inv_ucu_h_4_t_12*ucu_h_4_t_8;
-    v->ucu_e_1_in_axes4_z = v->inv_ucu_h_4_t_12*ucu_h_4_t_6;
-    const real ucu_h_4_t_14 =
+    const real ucu_S_z = t_z - m->ucu_base_point_z[i] + v->ucu_q_z;
+    const real ucu_S_in_turn1_x = ucu_S_x*m->ucu_base_frame_xx[i] +
+        ucu_S_y*m->ucu_base_frame_yx[i] + ucu_S_z*m->ucu_base_frame_zx[i];
+    const real ucu_S_in_turn1_y = ucu_S_x*m->ucu_base_frame_xy[i] +
+        ucu_S_y*m->ucu_base_frame_yy[i] + ucu_S_z*m->ucu_base_frame_zy[i];
+    const real ucu_S_in_turn1_z = ucu_S_x*m->ucu_base_frame_xz[i] +
+        ucu_S_y*m->ucu_base_frame_yz[i] + ucu_S_z*m->ucu_base_frame_zz[i];
+    /* (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    v->ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y;
+    const real ucu_root_1 = m->ucu_branch_1[i]*root(v->ucu_root_1_t);
+    /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ucu_root_1 = 1/ucu_root_1;
+    v->ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x;
+    /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+    v->ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y;
+    /* (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch */
+    v->ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + v->ucu_root_1_t;
+    v->ucu_root_2 = m->ucu_branch_2[i]*root(v->ucu_root_2_t);
+    /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+    v->inv_ucu_root_2 = 1/v->ucu_root_2;
+    v->ucu_c_2 = v->inv_ucu_root_2*ucu_root_1;
+    /* (ucu-q_2) displacement of joint 2 */
+    v->ucu_e_1_in_axes4_z = v->inv_ucu_root_2*ucu_S_in_turn1_z;
+    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
+    const real ucu_root_4_t =
         m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yx[i] +
         R_zx*m->ucu_base_frame_zx[i] + R_xx*m->ucu_base_frame_xx[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xx[i] +
         R_zy*m->ucu_base_frame_zx[i] + R_yy*m->ucu_base_frame_yx[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xx[i] +
         R_yz*m->ucu_base_frame_yx[i] + R_zz*m->ucu_base_frame_zx[i]);
-    const real ucu_h_4_t_15 =
+    const real ucu_root_4_t_2 =
         m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yy[i] +
         R_zx*m->ucu_base_frame_zy[i] + R_xx*m->ucu_base_frame_xy[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xy[i] +
         R_zy*m->ucu_base_frame_zy[i] + R_yy*m->ucu_base_frame_yy[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xy[i] +
         R_yz*m->ucu_base_frame_yy[i] + R_zz*m->ucu_base_frame_zy[i]);
-    const real ucu_h_4_t_16 =
+    const real ucu_root_4_t_3 =
         m->ucu_platform_joint_axis_platform_x[i]*(R_yx*m->ucu_base_frame_yz[i] +
         R_zx*m->ucu_base_frame_zz[i] + R_xx*m->ucu_base_frame_xz[i]) +
         m->ucu_platform_joint_axis_platform_y[i]*(R_xy*m->ucu_base_frame_xz[i] +
         R_zy*m->ucu_base_frame_zz[i] + R_yy*m->ucu_base_frame_yz[i]) +
         m->ucu_platform_joint_axis_platform_z[i]*(R_xz*m->ucu_base_frame_xz[i] +
         R_yz*m->ucu_base_frame_yz[i] + R_zz*m->ucu_base_frame_zz[i]);
-    const real ucu_h_4_t_17 = v->ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*v->ucu_h_4_t_9;
-    const real ucu_end_p1_in_turn4_x = ucu_h_4_t_15*v->ucu_h_4_t_9 -
-        v->ucu_h_4_t_10*ucu_h_4_t_14;
-    const real ucu_h_4_t_18 = v->ucu_e_1_in_axes4_z*ucu_h_4_t_17 -
-        v->ucu_h_4_t_13*ucu_h_4_t_16;
-    v->ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18;
-    const real ucu_h_4_t_20 = m->ucu_branch_4[i]*root(v->ucu_h_4_t_19);
-    const real inv_ucu_h_4_t_20 = 1/ucu_h_4_t_20;
-    v->ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x;
-    v->ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18;
-    v->ucu_h_4_in_axes1_y = v->ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_y[i] +
+    const real ucu_root_4_t_4 = v->ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*v->ucu_s_1;
+    const real ucu_end_p1_in_turn4_x = v->ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*v->ucu_s_1;
+    const real ucu_root_4_t_5 = v->ucu_e_1_in_axes4_z*ucu_root_4_t_4 -
+        v->ucu_c_2*ucu_root_4_t_3;
+    v->ucu_root_4_t_6 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+        ucu_root_4_t_5*ucu_root_4_t_5;
+    const real ucu_root_4 = m->ucu_branch_4[i]*root(v->ucu_root_4_t_6);
+    /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+    const real inv_ucu_root_4 = 1/ucu_root_4;
+    v->ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x;
+    /* (ucu-q_4) displacement of joint 4 */
+    v->ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5;
+    /* (ucu-h_4) first moment of link 4 about the connection point */
+    v->ucu_h_4_in_axes1_y = v->ucu_c_4*m->ucu_h_4_in_spec4_y[i] +
         v->ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_z[i];
-    v->ucu_h_4_in_spec2_z = v->ucu_e_2_in_axes4_x*m->ucu_h_4_in_spec4_z[i] -
+    v->ucu_h_4_in_spec2_z = v->ucu_c_4*m->ucu_h_4_in_spec4_z[i] -
         v->ucu_e_2_in_axes4_y*m->ucu_h_4_in_spec4_y[i];
     /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-    v->ucu_v_1_t = v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_13;
-    v->ucu_e_1_in_axes4_y = v->ucu_e_2_in_axes4_x*v->ucu_h_4_t_13;
-    const real ucu_v_1_in_axes4_x = v->ucu_e_1_in_axes4_y*v->ucu_h_4_t_12;
-    const real ucu_v_1_in_axes4_y = v->ucu_h_4_t_12*v->ucu_v_1_t;
-    v->ucu_v_1_in_axes2_z = v->ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
+    v->ucu_v_1_t = v->ucu_c_2*v->ucu_e_2_in_axes4_y;
+    v->ucu_e_1_in_axes4_y = v->ucu_c_2*v->ucu_c_4;
+    const real ucu_v_1_in_axes4_x = v->ucu_e_1_in_axes4_y*v->ucu_root_2;
+    const real ucu_v_1_in_axes4_y = v->ucu_root_2*v->ucu_v_1_t;
+    v->ucu_v_1_in_axes2_z = v->ucu_c_4*ucu_v_1_in_axes4_x +
         v->ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
-    v->ucu_v_1_t_2 = v->ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y -
-        v->ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
+    v->ucu_v_1_t_2 = v->ucu_c_4*ucu_v_1_in_axes4_y - v->ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
     /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-    v->ucu_n_m1_in_axes4_x = v->ucu_e_1_in_axes4_z*ucu_h_4_t_16 +
-        v->ucu_h_4_t_13*ucu_h_4_t_17;
-    v->axis_z_ucu_axes4_x = v->inv_ucu_h_4_t_12*ucu_h_4_t;
-    v->axis_z_ucu_axes4_y = v->inv_ucu_h_4_t_12*ucu_h_4_t_2;
-    v->axis_z_ucu_axes4_z = v->inv_ucu_h_4_t_12*ucu_h_4_t_3;
-    const real ucu_n_m1_t = v->ucu_e_1_in_axes4_z*v->ucu_e_2_in_axes4_x;
-    const real ucu_n_m1_t_2 = -v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_10 -
-        v->ucu_h_4_t_9*ucu_n_m1_t;
-    const real ucu_n_m1_t_3 = v->ucu_e_2_in_axes4_y*v->ucu_h_4_t_9 -
-        v->ucu_h_4_t_10*ucu_n_m1_t;
+    v->ucu_n_m1_in_axes4_x = v->ucu_c_2*ucu_root_4_t_4 + v->ucu_e_1_in_axes4_z*ucu_root_4_t_3;
+    v->axis_z_ucu_axes4_x = v->inv_ucu_root_2*ucu_S_x;
+    v->axis_z_ucu_axes4_y = v->inv_ucu_root_2*ucu_S_y;
+    v->axis_z_ucu_axes4_z = v->inv_ucu_root_2*ucu_S_z;
+    const real ucu_n_m1_t = v->ucu_c_4*v->ucu_e_1_in_axes4_z;
+    const real ucu_n_m1_t_2 = -v->ucu_e_2_in_axes4_y*v->ucu_s_1 - v->ucu_c_1*ucu_n_m1_t;
+    const real ucu_n_m1_t_3 = v->ucu_c_1*v->ucu_e_2_in_axes4_y - ucu_n_m1_t*v->ucu_s_1;
     v->axis_y_ucu_axes4_x = m->ucu_base_frame_xz[i]*v->ucu_e_1_in_axes4_y +
         m->ucu_base_frame_xx[i]*ucu_n_m1_t_2 + m->ucu_base_frame_xy[i]*ucu_n_m1_t_3;
     v->axis_y_ucu_axes4_y = m->ucu_base_frame_yz[i]*v->ucu_e_1_in_axes4_y +
@@ -1755,9 +1761,9 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_ucu_axes4_x*v->axis_z_ucu_axes4_z;
     v->axis_x_ucu_axes4_z = v->axis_y_ucu_axes4_x*v->axis_z_ucu_axes4_y -
         v->axis_y_ucu_axes4_y*v->axis_z_ucu_axes4_x;
-    v->ucu_end_p1_in_axes4_x = v->ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x +
-        v->ucu_e_2_in_axes4_y*ucu_h_4_t_18;
-    v->ucu_n_m1_in_axes2_z = v->ucu_e_2_in_axes4_x*v->ucu_n_m1_in_axes4_x;
+    v->ucu_end_p1_in_axes4_x = v->ucu_c_4*ucu_end_p1_in_turn4_x +
+        v->ucu_e_2_in_axes4_y*ucu_root_4_t_5;
+    v->ucu_n_m1_in_axes2_z = v->ucu_c_4*v->ucu_n_m1_in_axes4_x;
     v->ucu_n_m1_x = v->axis_x_ucu_axes4_x*v->ucu_n_m1_in_axes4_x -
         v->axis_z_ucu_axes4_x*v->ucu_end_p1_in_axes4_x;
     v->ucu_n_m1_y = v->axis_x_ucu_axes4_y*v->ucu_n_m1_in_axes4_x -
@@ -1772,7 +1778,7 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->inv_ucu_end_p1_in_axes4_x = 1/v->ucu_end_p1_in_axes4_x;
     /* (ucu-nd_m1) rate of moment direction 1 */
     v->ucu_end_p1_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x -
-        v->ucu_e_2_in_axes4_x*ucu_h_4_t_18;
+        v->ucu_c_4*ucu_root_4_t_5;
     /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
     v->ucu_g_in_axes4_x = v->axis_x_ucu_axes4_x*m->gravity_x +
         v->axis_x_ucu_axes4_y*m->gravity_y + v->axis_x_ucu_axes4_z*m->gravity_z;
@@ -1781,14 +1787,10 @@ INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->ucu_g_in_axes4_z = v->axis_z_ucu_axes4_x*m->gravity_x +
         v->axis_z_ucu_axes4_y*m->gravity_y + v->axis_z_ucu_axes4_z*m->gravity_z;
     /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-    const real ucu_mu_2_t_7 = v->ucu_h_4_t_10*m->ucu_mu_2_t_2[i] +
-        v->ucu_h_4_t_9*m->ucu_mu_2_t[i];
-    v->ucu_g_in_axes2_z = v->ucu_h_4_t_9*m->ucu_mu_2_t_2[i] -
-        v->ucu_h_4_t_10*m->ucu_mu_2_t[i];
-    v->ucu_g_in_axes2_x = v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i] +
-        v->ucu_h_4_t_13*ucu_mu_2_t_7;
-    v->ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 -
-        v->ucu_h_4_t_13*m->ucu_mu_2_t_3[i];
+    const real ucu_mu_2_t_7 = v->ucu_c_1*m->ucu_mu_2_t[i] + m->ucu_mu_2_t_2[i]*v->ucu_s_1;
+    v->ucu_g_in_axes2_z = v->ucu_c_1*m->ucu_mu_2_t_2[i] - m->ucu_mu_2_t[i]*v->ucu_s_1;
+    v->ucu_g_in_axes2_x = v->ucu_c_2*ucu_mu_2_t_7 + v->ucu_e_1_in_axes4_z*m->ucu_mu_2_t_3[i];
+    v->ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - v->ucu_c_2*m->ucu_mu_2_t_3[i];
     v->ucu_mu_2_t_11 = v->ucu_g_in_axes2_z*m->ucu_h_2_in_spec2_z[i] +
         v->ucu_g_in_axes2_y*m->ucu_h_2_in_spec2_y[i];
     v->ucu_mu_2_t_12 = v->ucu_g_in_axes2_x*m->ucu_h_2_in_spec2_y[i] -
@@ -1835,15 +1837,14 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         ucu_S_dot_y*m->ucu_base_frame_yy[i] + ucu_S_dot_z*m->ucu_base_frame_zy[i];
     const real ucu_S_dot_t_6 = ucu_S_dot_x*m->ucu_base_frame_xz[i] +
         ucu_S_dot_y*m->ucu_base_frame_yz[i] + ucu_S_dot_z*m->ucu_base_frame_zz[i];
-    const real ucu_S_dot_t_7 = ucu_S_dot_t_4*v->ucu_h_4_t_9 + ucu_S_dot_t_5*v->ucu_h_4_t_10;
-    v->ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*v->ucu_e_1_in_axes4_z +
-        ucu_S_dot_t_7*v->ucu_h_4_t_13;
+    const real ucu_S_dot_t_7 = ucu_S_dot_t_4*v->ucu_c_1 + ucu_S_dot_t_5*v->ucu_s_1;
+    v->ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*v->ucu_e_1_in_axes4_z + ucu_S_dot_t_7*v->ucu_c_2;
     /* (ucu-qd_1) rate of joint 1 */
-    v->ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_h_4_t_9 -
-        ucu_S_dot_t_4*v->ucu_h_4_t_10);
+    v->ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_c_1 -
+        ucu_S_dot_t_4*v->ucu_s_1);
     /* (ucu-qd_2) rate of joint 2 */
-    v->ucu_qd_2 = v->inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z -
-        ucu_S_dot_t_6*v->ucu_h_4_t_13 + v->ucu_qd_1*v->ucu_v_1_t_2);
+    v->ucu_qd_2 = v->inv_ucu_root_2*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z -
+        ucu_S_dot_t_6*v->ucu_c_2 + v->ucu_qd_1*v->ucu_v_1_t_2);
     /* (ucu-qd_4) rate of joint 4 */
     v->ucu_qd_4_t = v->ucu_qd_1*v->ucu_w_4_t;
     v->ucu_qd_4_t_2 = v->ucu_n_m1_in_axes2_z*v->ucu_qd_2;
@@ -1853,12 +1854,12 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         v->axis_z_ucu_axes4_z*omega_z;
     /* (ucu-omega_1) angular velocity of link 1 */
     v->ucu_omega_1_in_axes2_x = v->ucu_e_1_in_axes4_z*v->ucu_qd_1;
-    const real ucu_omega_1_in_axes2_y = -v->ucu_h_4_t_13*v->ucu_qd_1;
+    const real ucu_omega_1_in_axes2_y = -v->ucu_c_2*v->ucu_qd_1;
     /* (ucu-omega_2) angular velocity of link 2 */
     v->ucu_omega_2_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y +
-        v->ucu_e_2_in_axes4_x*v->ucu_qd_2;
+        v->ucu_c_4*v->ucu_qd_2;
     v->ucu_omega_2_in_axes4_y = v->ucu_e_2_in_axes4_y*v->ucu_qd_2 -
-        v->ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
+        v->ucu_c_4*ucu_omega_1_in_axes2_y;
     /* (ucu-W_2) centripetal tensor of link 2 */
     v->ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*v->ucu_qd_2;
     v->ucu_W_2_in_axes2_xz = v->ucu_omega_1_in_axes2_x*v->ucu_qd_2;
@@ -1872,11 +1873,11 @@ INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
     const real ucu_bias_t = 2*v->ucu_S_dot_in_axes2_x;
     v->ucu_bias_in_axes4_x = ucu_bias_t*v->ucu_omega_2_in_axes4_y +
-        v->ucu_h_4_t_12*(v->ucu_W_2_in_axes2_xz*v->ucu_e_2_in_axes4_x +
+        v->ucu_root_2*(v->ucu_W_2_in_axes2_xz*v->ucu_c_4 +
         v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_x);
     v->ucu_bias_in_axes4_y =
-        v->ucu_h_4_t_12*(v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_y +
-        v->ucu_zeta_2_t) - ucu_bias_t*v->ucu_omega_2_in_axes4_x;
+        v->ucu_root_2*(v->ucu_omega_1_in_axes2_x*v->ucu_omega_2_in_axes4_y + v->ucu_zeta_2_t)
+        - ucu_bias_t*v->ucu_omega_2_in_axes4_x;
     /* (ucu-nd_m1) rate of moment direction 1 */
     const real ucu_omega_in_axes4_y = v->axis_y_ucu_axes4_x*omega_x +
         v->axis_y_ucu_axes4_y*omega_y + v->axis_y_ucu_axes4_z*omega_z;
@@ -1956,11 +1957,11 @@ INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
     const real ucu_etad_1 = v->ucu_etad_1_t + v->ucu_nu_1_2;
     /* (ucu-qdd_1) acceleration of joint 1 */
-    v->ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
+    v->ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_in_axes4_x +
         v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
     /* (ucu-qdd_2) acceleration of joint 2 */
-    v->ucu_qdd_2 = v->inv_ucu_h_4_t_12*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
-        v->ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y + v->ucu_qdd_1*v->ucu_v_1_t_2);
+    v->ucu_qdd_2 = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x -
+        v->ucu_c_4*ucu_rel_in_axes4_y + v->ucu_qdd_1*v->ucu_v_1_t_2);
     /* (ucu-qdd_4) acceleration of joint 4 */
     v->ucu_qdd_4_t = v->inv_ucu_end_p1_in_axes4_x*(v->ucu_qdd_1*v->ucu_w_4_t + ucu_etad_1 -
         v->ucu_n_m1_in_axes2_z*v->ucu_qdd_2);
@@ -1969,26 +1970,26 @@ INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *s, const real *A, va
 INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
 {
     /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-    const real ucu_J_4_in_axes2_xz = m->ucu_J_4_in_spec4_xy[i]*v->ucu_e_2_in_axes4_x +
+    const real ucu_J_4_in_axes2_xz = m->ucu_J_4_in_spec4_xy[i]*v->ucu_c_4 +
         m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_2_in_axes4_y;
     /* (ucu-w_1) force part of reciprocal wrench 1 */
-    const real ucu_w_1_in_axes4_x = v->inv_ucu_v_1_in_axes2_z*v->ucu_e_2_in_axes4_x;
+    const real ucu_w_1_in_axes4_x = v->inv_ucu_v_1_in_axes2_z*v->ucu_c_4;
     const real ucu_w_1_in_axes4_y = v->inv_ucu_v_1_in_axes2_z*v->ucu_e_2_in_axes4_y;
     /* (ucu-w_2) force part of reciprocal wrench 2 */
-    const real ucu_w_2_t = v->inv_ucu_h_4_t_12*v->inv_ucu_v_1_in_axes2_z*v->ucu_v_1_t_2;
-    const real ucu_w_2_in_axes4_x = v->inv_ucu_h_4_t_12*v->ucu_e_2_in_axes4_y +
-        v->ucu_e_2_in_axes4_x*ucu_w_2_t;
+    const real ucu_w_2_t = v->inv_ucu_root_2*v->inv_ucu_v_1_in_axes2_z*v->ucu_v_1_t_2;
+    const real ucu_w_2_in_axes4_x = v->inv_ucu_root_2*v->ucu_e_2_in_axes4_y +
+        v->ucu_c_4*ucu_w_2_t;
     const real ucu_w_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_w_2_t -
-        v->inv_ucu_h_4_t_12*v->ucu_e_2_in_axes4_x;
+        v->inv_ucu_root_2*v->ucu_c_4;
     /* (ucu-w_4) force part of reciprocal wrench 4 */
     const real ucu_w_4_t_2 =
-        v->inv_ucu_end_p1_in_axes4_x*v->inv_ucu_h_4_t_12*v->ucu_n_m1_in_axes2_z;
+        v->inv_ucu_end_p1_in_axes4_x*v->inv_ucu_root_2*v->ucu_n_m1_in_axes2_z;
     const real ucu_w_4_t_3 =
         v->inv_ucu_v_1_in_axes2_z*(v->inv_ucu_end_p1_in_axes4_x*v->ucu_w_4_t -
         v->ucu_v_1_t_2*ucu_w_4_t_2);
     const real ucu_w_4_in_axes4_x = v->ucu_e_2_in_axes4_y*ucu_w_4_t_2 -
-        v->ucu_e_2_in_axes4_x*ucu_w_4_t_3;
-    const real ucu_w_4_in_axes4_y = -v->ucu_e_2_in_axes4_x*ucu_w_4_t_2 -
+        v->ucu_c_4*ucu_w_4_t_3;
+    const real ucu_w_4_in_axes4_y = -v->ucu_c_4*ucu_w_4_t_2 -
         v->ucu_e_2_in_axes4_y*ucu_w_4_t_3;
     /* (ucu-o_4) moment part of reciprocal wrench 4 */
     const real ucu_o_4_t = v->inv_ucu_end_p1_in_axes4_x*v->ucu_n_m1_in_axes4_x;
@@ -2002,36 +2003,36 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
     /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
     const real ucu_Jc_2_t = m->ucu_J_4_in_spec4_yz[i]*v->ucu_e_2_in_axes4_y;
-    const real ucu_Jc_2_t_2 = m->ucu_J_4_in_spec4_yz[i]*v->ucu_e_2_in_axes4_x;
+    const real ucu_Jc_2_t_2 = m->ucu_J_4_in_spec4_yz[i]*v->ucu_c_4;
     const real ucu_Jc_2_t_3 = m->ucu_J_4_in_spec4_yy[i]*v->ucu_e_2_in_axes4_y - ucu_Jc_2_t_2;
-    const real ucu_Jc_2_t_4 = m->ucu_J_4_in_spec4_zz[i]*v->ucu_e_2_in_axes4_x - ucu_Jc_2_t;
+    const real ucu_Jc_2_t_4 = m->ucu_J_4_in_spec4_zz[i]*v->ucu_c_4 - ucu_Jc_2_t;
     const real ucu_Jc_2_in_axes2_xy = m->ucu_J_4_in_spec4_xy[i]*v->ucu_e_2_in_axes4_y -
-        m->ucu_J_2_in_spec2_xz[i] - m->ucu_J_4_in_spec4_xz[i]*v->ucu_e_2_in_axes4_x;
+        m->ucu_J_2_in_spec2_xz[i] - m->ucu_J_4_in_spec4_xz[i]*v->ucu_c_4;
     const real ucu_Jc_2_in_axes1_yz = v->ucu_e_1_in_axes4_z*(m->ucu_J_2_in_spec2_xy[i] +
-        ucu_J_4_in_axes2_xz) - v->ucu_h_4_t_13*(ucu_Jc_2_t_3*v->ucu_e_2_in_axes4_x -
-        m->ucu_J_2_in_spec2_yz[i] - ucu_Jc_2_t_4*v->ucu_e_2_in_axes4_y);
+        ucu_J_4_in_axes2_xz) - v->ucu_c_2*(ucu_Jc_2_t_3*v->ucu_c_4 - m->ucu_J_2_in_spec2_yz[i]
+        - ucu_Jc_2_t_4*v->ucu_e_2_in_axes4_y);
     /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_4_t = m->ucu_J_4_in_spec4_xx[i]*ucu_o_4_t;
     /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real ucu_d_Gamma_4_t = v->inv_ucu_end_p1_in_axes4_x*m->ucu_J_4_in_spec4_xx[i];
-    const real ucu_d_Gamma_4_t_2 = v->inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz +
+    const real ucu_d_Gamma_4_t_2 = v->inv_ucu_root_2*(ucu_J_4_in_axes2_xz +
         ucu_d_Gamma_4_t*v->ucu_n_m1_in_axes2_z);
     const real ucu_d_Gamma_4_t_3 = v->inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 -
         ucu_d_Gamma_4_t*v->ucu_w_4_t + ucu_d_Gamma_4_t_2*v->ucu_v_1_t_2);
     const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*v->ucu_e_2_in_axes4_y -
-        m->ucu_h_4_in_spec4_z[i] + ucu_d_Gamma_4_t_3*v->ucu_e_2_in_axes4_x;
+        m->ucu_h_4_in_spec4_z[i] + v->ucu_c_4*ucu_d_Gamma_4_t_3;
     const real ucu_d_Gamma_4_in_axes4_y = m->ucu_h_4_in_spec4_y[i] -
-        ucu_d_Gamma_4_t_2*v->ucu_e_2_in_axes4_x + ucu_d_Gamma_4_t_3*v->ucu_e_2_in_axes4_y;
+        v->ucu_c_4*ucu_d_Gamma_4_t_2 + ucu_d_Gamma_4_t_3*v->ucu_e_2_in_axes4_y;
     /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_o_4_t;
     /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
     const real ucu_d_Gamma_2_t = v->inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz;
-    const real ucu_d_Gamma_2_t_2 = v->inv_ucu_h_4_t_12*(m->ucu_J_2_in_spec2_yy[i] +
-        v->ucu_e_2_in_axes4_x*(m->ucu_J_4_in_spec4_yy[i]*v->ucu_e_2_in_axes4_x + ucu_Jc_2_t) +
+    const real ucu_d_Gamma_2_t_2 = v->inv_ucu_root_2*(m->ucu_J_2_in_spec2_yy[i] +
+        v->ucu_c_4*(m->ucu_J_4_in_spec4_yy[i]*v->ucu_c_4 + ucu_Jc_2_t) +
         v->ucu_e_2_in_axes4_y*(m->ucu_J_4_in_spec4_zz[i]*v->ucu_e_2_in_axes4_y + ucu_Jc_2_t_2)
         + ucu_d_Gamma_2_t*v->ucu_n_m1_in_axes2_z);
     const real ucu_d_Gamma_2_in_axes2_z =
@@ -2039,33 +2040,32 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         ucu_d_Gamma_2_t_2*v->ucu_v_1_t_2);
     const real ucu_d_Gamma_2_in_axes2_y = m->ucu_h_4_in_spec4_x[i] + ucu_d_Gamma_2_t_2;
     const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*v->ucu_e_2_in_axes4_y -
-        ucu_d_Gamma_2_in_axes2_y*v->ucu_e_2_in_axes4_x;
+        v->ucu_c_4*ucu_d_Gamma_2_in_axes2_y;
     /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
        links' inertia and weight */
     const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_t;
     /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real ucu_d_Gamma_1_t = v->inv_ucu_end_p1_in_axes4_x*ucu_D_1_4;
-    const real ucu_d_Gamma_1_t_2 = v->inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz -
+    const real ucu_d_Gamma_1_t_2 = v->inv_ucu_root_2*(-ucu_Jc_2_in_axes1_yz -
         ucu_d_Gamma_1_t*v->ucu_n_m1_in_axes2_z);
-    const real ucu_d_Gamma_1_t_3 = v->ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*v->ucu_h_4_t_13
-        - m->ucu_Jc_2_in_axes2_xx[i]*v->ucu_e_1_in_axes4_z) -
-        v->ucu_h_4_t_13*(v->ucu_h_4_t_13*(m->ucu_J_2_in_spec2_zz[i] +
-        ucu_Jc_2_t_3*v->ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*v->ucu_e_2_in_axes4_x) -
-        ucu_Jc_2_in_axes2_xy*v->ucu_e_1_in_axes4_z) + ucu_d_Gamma_1_t*v->ucu_w_4_t +
-        ucu_d_Gamma_1_t_2*v->ucu_v_1_t_2;
-    const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*v->ucu_h_4_t_13;
+    const real ucu_d_Gamma_1_t_3 = v->ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*v->ucu_c_2 -
+        m->ucu_Jc_2_in_axes2_xx[i]*v->ucu_e_1_in_axes4_z) -
+        v->ucu_c_2*(v->ucu_c_2*(m->ucu_J_2_in_spec2_zz[i] + ucu_Jc_2_t_3*v->ucu_e_2_in_axes4_y
+        + ucu_Jc_2_t_4*v->ucu_c_4) - ucu_Jc_2_in_axes2_xy*v->ucu_e_1_in_axes4_z) +
+        ucu_d_Gamma_1_t*v->ucu_w_4_t + ucu_d_Gamma_1_t_2*v->ucu_v_1_t_2;
+    const real ucu_d_Gamma_1_in_axes1_z = v->ucu_c_2*ucu_d_Gamma_1_t_2;
     const real ucu_d_Gamma_1_in_axes1_x = -v->ucu_h_4_in_axes1_y -
         ucu_d_Gamma_1_t_2*v->ucu_e_1_in_axes4_z;
-    const real ucu_d_Gamma_1_in_axes1_y = m->ucu_h_4_in_spec4_x[i]*v->ucu_h_4_t_13 -
+    const real ucu_d_Gamma_1_in_axes1_y = v->ucu_c_2*m->ucu_h_4_in_spec4_x[i] -
         v->ucu_e_1_in_axes4_z*v->ucu_h_4_in_spec2_z -
         v->inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3;
-    const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_x*v->ucu_h_4_t_13 +
+    const real ucu_d_Gamma_1_in_axes4_z = v->ucu_c_2*ucu_d_Gamma_1_in_axes1_x +
         ucu_d_Gamma_1_in_axes1_z*v->ucu_e_1_in_axes4_z;
     const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_x*v->ucu_e_1_in_axes4_z -
-        ucu_d_Gamma_1_in_axes1_z*v->ucu_h_4_t_13;
+        v->ucu_c_2*ucu_d_Gamma_1_in_axes1_z;
     const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_y*v->ucu_e_2_in_axes4_y -
-        ucu_d_Gamma_1_t_4*v->ucu_e_2_in_axes4_x;
+        v->ucu_c_4*ucu_d_Gamma_1_t_4;
     /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x +
@@ -2116,18 +2116,17 @@ INLINE void stage_ucu_M_dynamics(const prepared *m, size_t i, values_ucu *v)
         ucu_w_4_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
         m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
         v->ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-        ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*v->ucu_e_2_in_axes4_x +
+        ucu_w_1_in_axes4_x*(v->ucu_c_4*ucu_d_Gamma_1_in_axes1_y +
         ucu_d_Gamma_1_t_4*v->ucu_e_2_in_axes4_y) -
         ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*v->ucu_e_2_in_axes4_y +
-        ucu_d_Gamma_2_in_axes2_z*v->ucu_e_2_in_axes4_x);
+        v->ucu_c_4*ucu_d_Gamma_2_in_axes2_z);
     const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*m->ucu_h_4_in_spec4_z[i] -
         ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
         ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
         ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
         m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
         v->ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
-    const real ucu_d_c_in_axes4_yy =
-        m->ucu_h_4_in_spec4_x[i]*(v->ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y -
+    const real ucu_d_c_in_axes4_yy = m->ucu_h_4_in_spec4_x[i]*(v->ucu_c_4*ucu_w_2_in_axes4_y -
         v->ucu_v_1_t*ucu_w_1_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
         ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
         ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
@@ -2253,15 +2252,14 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         v->ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
     const real ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6;
     /* (ucu-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real ucu_qdd_1_o =
-        v->inv_ucu_v_1_in_axes2_z*(v->ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+    const real ucu_qdd_1_o = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_o_in_axes4_x +
         v->ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
     /* (ucu-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real ucu_qdd_2_o = v->inv_ucu_h_4_t_12*(v->ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
-        v->ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v->ucu_v_1_t_2);
+    const real ucu_qdd_2_o = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x -
+        v->ucu_c_4*ucu_rel_o_in_axes4_y + ucu_qdd_1_o*v->ucu_v_1_t_2);
     /* (ucu-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real ucu_alpha_1_o_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qdd_1_o;
-    const real ucu_alpha_1_o_in_axes2_y = -v->ucu_h_4_t_13*ucu_qdd_1_o;
+    const real ucu_alpha_1_o_in_axes2_y = -v->ucu_c_2*ucu_qdd_1_o;
     /* (ucu-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real ucu_alpha_2_o_in_axes2_x = v->ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
     const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - v->ucu_W_2_in_axes2_xz;
@@ -2272,9 +2270,9 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real ucu_B_2_o_in_axes2_zy = v->ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
     /* (ucu-alpha_4_o) remainder of: angular acceleration of link 4 */
     const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
-        ucu_alpha_2_o_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_e_2_in_axes4_x*ucu_qdd_2_o;
+        ucu_alpha_2_o_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_c_4*ucu_qdd_2_o;
     const real ucu_alpha_4_o_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-        v->ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v->ucu_e_2_in_axes4_x;
+        v->ucu_omega_2_in_axes4_x*ucu_qd_4 - ucu_alpha_2_o_in_axes2_y*v->ucu_c_4;
     const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
         v->inv_ucu_end_p1_in_axes4_x*(ucu_qdd_1_o*v->ucu_w_4_t + ucu_nu_1 -
         v->ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
@@ -2338,28 +2336,26 @@ INLINE void stage_ucu_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
        connection point left out */
     const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
     const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
-        v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
-        v->ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
-    const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
-        v->ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
-        v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - v->ucu_c_4*ucu_mu_4_o_in_axes4_y;
+    const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + v->ucu_c_4*ucu_mu_4_o_in_axes4_x
+        + v->ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
     /* (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and
        weight along all degrees of freedom */
     const real ucu_G_m1_o_t = v->inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
     /* (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real ucu_c_o_t = v->inv_ucu_h_4_t_12*(ucu_G_m1_o_t*v->ucu_n_m1_in_axes2_z +
+    const real ucu_c_o_t = v->inv_ucu_root_2*(ucu_G_m1_o_t*v->ucu_n_m1_in_axes2_z +
         ucu_N_2_o_in_axes2_z);
     const real ucu_c_o_t_2 = v->inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v->ucu_w_4_t -
-        ucu_N_2_o_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v->ucu_h_4_t_13 -
+        ucu_N_2_o_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_o_in_axes2_y*v->ucu_c_2 -
         ucu_c_o_t*v->ucu_v_1_t_2);
     const real ucu_c_o_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(v->ucu_W_2_t_2 + ucu_mu_4_o_t) -
         ucu_B_4_o_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] -
         ucu_B_4_o_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] - ucu_c_o_t*v->ucu_e_2_in_axes4_y +
-        ucu_c_o_t_2*v->ucu_e_2_in_axes4_x;
+        v->ucu_c_4*ucu_c_o_t_2;
     const real ucu_c_o_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(v->ucu_W_2_t + ucu_mu_4_o_t) -
         ucu_B_4_o_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] -
-        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + ucu_c_o_t*v->ucu_e_2_in_axes4_x +
+        ucu_B_4_o_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] + v->ucu_c_4*ucu_c_o_t +
         ucu_c_o_t_2*v->ucu_e_2_in_axes4_y;
     /* (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation */
     const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v->ucu_n_m1_in_axes4_x;
@@ -2389,7 +2385,7 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
     const real ucu_W_4_in_axes4_yz_2 = v->ucu_omega_2_in_axes4_y*v->ucu_omega_4_in_axes4_z_2;
     /* (ucu-alpha_1) angular acceleration of link 1 */
     const real ucu_alpha_1_in_axes2_x = v->ucu_e_1_in_axes4_z*v->ucu_qdd_1;
-    const real ucu_alpha_1_in_axes2_y = -v->ucu_h_4_t_13*v->ucu_qdd_1;
+    const real ucu_alpha_1_in_axes2_y = -v->ucu_c_2*v->ucu_qdd_1;
     /* (ucu-alpha_2) angular acceleration of link 2 */
     const real ucu_alpha_2_in_axes2_x = v->ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
     const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - v->ucu_W_2_in_axes2_xz;
@@ -2400,10 +2396,9 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
     const real ucu_B_2_in_axes2_zy = v->ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
     /* (ucu-alpha_4) angular acceleration of link 4 */
     const real ucu_alpha_4_in_axes4_x = v->ucu_zeta_4_in_axes4_x_2 +
-        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_e_2_in_axes4_x*v->ucu_qdd_2;
+        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_c_4*v->ucu_qdd_2;
     const real ucu_alpha_4_in_axes4_y = v->ucu_e_2_in_axes4_y*v->ucu_qdd_2 -
-        v->ucu_omega_2_in_axes4_x*v->ucu_qd_4_2 -
-        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_x;
+        v->ucu_omega_2_in_axes4_x*v->ucu_qd_4_2 - ucu_alpha_2_in_axes2_y*v->ucu_c_4;
     const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - v->ucu_qdd_4_t;
     /* (ucu-B_4) acceleration tensor of link 4 */
     const real ucu_B_4_in_axes4_xy = v->ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
@@ -2459,26 +2454,26 @@ INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
        left out */
     const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
     const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y +
-        v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v->ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y;
-    const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z +
-        v->ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x + v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v->ucu_c_4*ucu_mu_4_in_axes4_y;
+    const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z + v->ucu_c_4*ucu_mu_4_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
     /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
        degrees of freedom */
     const real ucu_G_m1_t = v->inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
     /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real ucu_c_t = v->inv_ucu_h_4_t_12*(ucu_G_m1_t*v->ucu_n_m1_in_axes2_z +
+    const real ucu_c_t = v->inv_ucu_root_2*(ucu_G_m1_t*v->ucu_n_m1_in_axes2_z +
         ucu_N_2_in_axes2_z);
     const real ucu_c_t_2 = v->inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v->ucu_w_4_t -
-        ucu_N_2_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v->ucu_h_4_t_13 -
+        ucu_N_2_in_axes2_x*v->ucu_e_1_in_axes4_z + ucu_N_2_in_axes2_y*v->ucu_c_2 -
         ucu_c_t*v->ucu_v_1_t_2);
     v->ucu_c_in_axes4_x = m->ucu_h_4_in_spec4_y[i]*(v->ucu_W_2_t_2 + ucu_mu_4_t_2) -
         ucu_B_4_in_axes4_xz*m->ucu_h_4_in_spec4_x[i] -
         ucu_B_4_in_axes4_xy*m->ucu_h_4_in_spec4_z[i] - ucu_c_t*v->ucu_e_2_in_axes4_y +
-        ucu_c_t_2*v->ucu_e_2_in_axes4_x;
+        v->ucu_c_4*ucu_c_t_2;
     v->ucu_c_in_axes4_y = m->ucu_h_4_in_spec4_z[i]*(v->ucu_W_2_t + ucu_mu_4_t_2) -
         ucu_B_4_in_axes4_yz*m->ucu_h_4_in_spec4_x[i] -
-        ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] + ucu_c_t*v->ucu_e_2_in_axes4_x +
+        ucu_B_4_in_axes4_yx*m->ucu_h_4_in_spec4_y[i] + v->ucu_c_4*ucu_c_t +
         ucu_c_t_2*v->ucu_e_2_in_axes4_y;
     /* (ucu-c_m) moment of the leg on the platform without actuation */
     const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v->ucu_n_m1_in_axes4_x;
@@ -2582,11 +2577,11 @@ INLINE void any_entries_ucu(size_t k, size_t count, const values_ucu *v, real *o
 
 INLINE void any_singular_ucu(size_t k, const values_ucu *v, real *o)
 {
-    o[k] = UNLESS(magnitude(v->ucu_h_4_t_7) > LEAST_1) + UNLESS(magnitude(v->ucu_h_4_t_11) >
-        LEAST_1) + UNLESS(magnitude(v->ucu_h_4_t_19) > LEAST_2) +
+    o[k] = UNLESS(magnitude(v->ucu_root_1_t) > LEAST_1) + UNLESS(magnitude(v->ucu_root_2_t) >
+        LEAST_1) + UNLESS(magnitude(v->ucu_root_4_t_6) > LEAST_2) +
         UNLESS(magnitude(v->ucu_end_p1_in_axes4_x) > LEAST_3) +
-        UNLESS(magnitude(v->ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v->ucu_v_1_in_axes2_z)
-        > LEAST_4);
+        UNLESS(magnitude(v->ucu_root_2) > LEAST_4) + UNLESS(magnitude(v->ucu_v_1_in_axes2_z) >
+        LEAST_4);
 }
 
 INLINE void any_place_ucu_2(size_t k, size_t at, size_t count, const real *o, status_flags *t)
@@ -3114,8 +3109,8 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     any_entries_ucu(k, count, &v, o);
-    o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_12) >
+    o[6*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_2) >
         LEAST_4);
     o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
         (v.ucu_H_a_3_x + (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
@@ -3366,23 +3361,23 @@ INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t i, s
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     /* (ucu-q_1) displacement of joint 1 */
-    const real ucu_q_1 = angle(v.ucu_h_4_t_10, v.ucu_h_4_t_9);
+    const real ucu_q_1 = angle(v.ucu_s_1, v.ucu_c_1);
     /* (ucu-q_2) displacement of joint 2 */
-    const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_h_4_t_13);
+    const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_c_2);
     /* (ucu-q_4) displacement of joint 4 */
-    const real ucu_q_4 = angle(-v.ucu_e_2_in_axes4_y, v.ucu_e_2_in_axes4_x);
+    const real ucu_q_4 = angle(-v.ucu_e_2_in_axes4_y, v.ucu_c_4);
     /* (ucu-q_1) */
     o[0*count + k] = ucu_q_1;
     /* (ucu-q_2) */
     o[1*count + k] = ucu_q_2;
     /* (ucu-q_3) displacement of joint 3 */
-    o[2*count + k] = v.ucu_h_4_t_12;
+    o[2*count + k] = v.ucu_root_2;
     /* (ucu-q_4) */
     o[3*count + k] = ucu_q_4;
-    o[4*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
+    o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
         LEAST_2);
-    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_h_4_t_12 + ucu_q_4);
+    o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_root_2 + ucu_q_4);
 }
 
 INLINE void inverse_kinematics_place_ucu(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3515,7 +3510,7 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t i, 
     stage_ucu_V_X(m, w, i, j, V, &v);
     stage_ucu_A_V_X(w, j, s, A, &v);
     /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-    const real ucu_rel_in_axes4_z = v.ucu_S_ddot_in_axes4_z + v.ucu_W_2_t_3*v.ucu_h_4_t_12;
+    const real ucu_rel_in_axes4_z = v.ucu_S_ddot_in_axes4_z + v.ucu_W_2_t_3*v.ucu_root_2;
     /* (ucu-qdd_1) acceleration of joint 1 */
     o[0*count + k] = v.ucu_qdd_1;
     /* (ucu-qdd_2) acceleration of joint 2 */
@@ -3676,20 +3671,21 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
     values_ucu v;
     stage_ucu_X(m, w, i, j, s, X, &v);
     /* (potential) */
-    const real ucu_potential_t_4 = v.ucu_h_4_t_10*m->ucu_potential_t_2[i] +
-        v.ucu_h_4_t_9*m->ucu_potential_t[i];
+    const real ucu_potential_t_4 = v.ucu_c_1*m->ucu_potential_t[i] +
+        m->ucu_potential_t_2[i]*v.ucu_s_1;
     const real ucu_potential_t_5 = v.ucu_g_in_axes2_y*(m->ucu_h_2_in_spec2_z[i] -
         m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*ucu_potential_t_4 -
-        v.ucu_h_4_t_13*m->ucu_potential_t_3[i]) + v.ucu_h_4_in_spec2_z) -
+        v.ucu_c_2*m->ucu_potential_t_3[i]) + v.ucu_h_4_in_spec2_z) -
         v.ucu_g_in_axes2_x*(m->ucu_h_2_in_spec2_x[i] + m->ucu_h_4_in_spec4_x[i] +
-        m->ucu_link2_mass[i]*(v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i] +
-        v.ucu_h_4_t_13*ucu_potential_t_4)) - v.ucu_g_in_axes2_z*(m->ucu_h_2_in_spec2_y[i] +
-        m->ucu_link2_mass[i]*(v.ucu_h_4_t_9*m->ucu_potential_t_2[i] -
-        v.ucu_h_4_t_10*m->ucu_potential_t[i]) + v.ucu_h_4_in_axes1_y);
+        m->ucu_link2_mass[i]*(v.ucu_c_2*ucu_potential_t_4 +
+        v.ucu_e_1_in_axes4_z*m->ucu_potential_t_3[i])) -
+        v.ucu_g_in_axes2_z*(m->ucu_h_2_in_spec2_y[i] +
+        m->ucu_link2_mass[i]*(v.ucu_c_1*m->ucu_potential_t_2[i] -
+        m->ucu_potential_t[i]*v.ucu_s_1) + v.ucu_h_4_in_axes1_y);
     /* (potential) */
     gather(&terms[0*count + k], add, ucu_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
-        UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
+    o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+        UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
         LEAST_2);
 }
 
@@ -3756,11 +3752,11 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t i, size_t j, 
     stage_ucu_X(m, w, i, j, s, X, &v);
     /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real ucu_pivot_size = magnitude(v.ucu_h_4_t_7);
-    const real ucu_pivot_size_2 = magnitude(v.ucu_h_4_t_11);
-    const real ucu_pivot_size_3 = magnitude(v.ucu_h_4_t_19);
+    const real ucu_pivot_size = magnitude(v.ucu_root_1_t);
+    const real ucu_pivot_size_2 = magnitude(v.ucu_root_2_t);
+    const real ucu_pivot_size_3 = magnitude(v.ucu_root_4_t_6);
     const real ucu_pivot_size_4 = magnitude(v.ucu_end_p1_in_axes4_x);
-    const real ucu_pivot_size_5 = magnitude(v.ucu_h_4_t_12);
+    const real ucu_pivot_size_5 = magnitude(v.ucu_root_2);
     const real ucu_pivot_size_6 = magnitude(v.ucu_v_1_in_axes2_z);
     const real ucu_least_pivots =
         lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),

@@ -2003,7 +2003,7 @@ def _run_dynamics(m, X, V):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -2013,70 +2013,73 @@ def _run_dynamics(m, X, V):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
-        ucu_h_4_in_axes1_y = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
         )
-        ucu_h_4_in_spec2_z = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
-        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_h_4_in_axes1_y = ucu_c_4*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_h_4_in_spec2_z = ucu_c_4*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         # (ucu-J_4) inertia tensor of link 4 about the connection point
-        ucu_J_4_in_axes2_xz = (
-        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
-        )
+        ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_c_4 + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -2096,27 +2099,23 @@ def _run_dynamics(m, X, V):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -2138,10 +2137,8 @@ def _run_dynamics(m, X, V):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         ucu_n_m1_x = (
         axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
         )
@@ -2153,31 +2150,31 @@ def _run_dynamics(m, X, V):
         )
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x
+        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_c_4
         ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y
         # (ucu-w_2) force part of reciprocal wrench 2
-        ucu_w_2_t = inv_ucu_h_4_t_12*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2
-        ucu_w_2_in_axes4_x = inv_ucu_h_4_t_12*ucu_e_2_in_axes4_y + ucu_e_2_in_axes4_x*ucu_w_2_t
-        ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t - inv_ucu_h_4_t_12*ucu_e_2_in_axes4_x
+        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2
+        ucu_w_2_in_axes4_x = inv_ucu_root_2*ucu_e_2_in_axes4_y + ucu_c_4*ucu_w_2_t
+        ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t - inv_ucu_root_2*ucu_c_4
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_h_4_t_12*ucu_n_m1_in_axes2_z
+        ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_root_2*ucu_n_m1_in_axes2_z
         ucu_w_4_t_3 = (
         inv_ucu_v_1_in_axes2_z*(inv_ucu_end_p1_in_axes4_x*ucu_w_4_t - ucu_v_1_t_2*ucu_w_4_t_2)
         )
-        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 - ucu_e_2_in_axes4_x*ucu_w_4_t_3
-        ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_2 - ucu_e_2_in_axes4_y*ucu_w_4_t_3
+        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 - ucu_c_4*ucu_w_4_t_3
+        ucu_w_4_in_axes4_y = -ucu_c_4*ucu_w_4_t_2 - ucu_e_2_in_axes4_y*ucu_w_4_t_3
         # (ucu-o_4) moment part of reciprocal wrench 4
         ucu_o_4_t = inv_ucu_end_p1_in_axes4_x*ucu_n_m1_in_axes4_x
         # (ucu-eta_1) rate at which the joints turn along moment direction 1
         ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -2191,14 +2188,10 @@ def _run_dynamics(m, X, V):
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        )
-        ucu_omega_2_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
-        )
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
@@ -2231,20 +2224,18 @@ def _run_dynamics(m, X, V):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
-        )
+        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
@@ -2269,17 +2260,17 @@ def _run_dynamics(m, X, V):
         ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6
         # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
-        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
         )
         # (ucu-qdd_2_o) remainder of: acceleration of joint 2
         ucu_qdd_2_o = (
-        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
-            ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y)
+        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
+            ucu_c_4*ucu_rel_o_in_axes4_y)
         )
         # (ucu-alpha_1_o) remainder of: angular acceleration of link 1
         ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
-        ucu_alpha_1_o_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1_o
+        ucu_alpha_1_o_in_axes2_y = -ucu_c_2*ucu_qdd_1_o
         # (ucu-alpha_2_o) remainder of: angular acceleration of link 2
         ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
         ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -2292,11 +2283,10 @@ def _run_dynamics(m, X, V):
         ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y
         # (ucu-alpha_4_o) remainder of: angular acceleration of link 4
         ucu_alpha_4_o_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_e_2_in_axes4_x*ucu_qdd_2_o
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2_o
         )
         ucu_alpha_4_o_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x -
+        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_c_4 -
             ucu_omega_2_in_axes4_x*ucu_qd_4
         )
         ucu_alpha_4_o_in_axes4_z = (
@@ -2341,17 +2331,15 @@ def _run_dynamics(m, X, V):
         )
         # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y
-        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yz*ucu_c_4
         ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t_2
-        ucu_Jc_2_t_4 = ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x - ucu_Jc_2_t
+        ucu_Jc_2_t_4 = ucu_J_4_in_spec4_zz*ucu_c_4 - ucu_Jc_2_t
         ucu_Jc_2_in_axes2_xy = (
-        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz -
-            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_c_4
         )
         ucu_Jc_2_in_axes1_yz = (
         ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy + ucu_J_4_in_axes2_xz) -
-            ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x - ucu_J_2_in_spec2_yz -
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
+            ucu_c_2*(ucu_Jc_2_t_3*ucu_c_4 - ucu_J_2_in_spec2_yz - ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
         )
         # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
         ucu_mu_4_t = ucu_J_4_in_spec4_yz*(ucu_W_2_t - ucu_W_2_t_2)
@@ -2383,28 +2371,26 @@ def _run_dynamics(m, X, V):
         # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         ucu_d_Gamma_4_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_spec4_xx
         ucu_d_Gamma_4_t_2 = (
-        inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz + ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
+        inv_ucu_root_2*(ucu_J_4_in_axes2_xz + ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
         )
         ucu_d_Gamma_4_t_3 = (
         inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 + ucu_d_Gamma_4_t_2*ucu_v_1_t_2 -
             ucu_d_Gamma_4_t*ucu_w_4_t)
         )
         ucu_d_Gamma_4_in_axes4_x = (
-        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x -
-            ucu_h_4_in_spec4_z
+        ucu_c_4*ucu_d_Gamma_4_t_3 + ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y - ucu_h_4_in_spec4_z
         )
         ucu_d_Gamma_4_in_axes4_y = (
-        ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x
+        ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_4_t_2
         )
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
-        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
         ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
         ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
         ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
@@ -2434,10 +2420,10 @@ def _run_dynamics(m, X, V):
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
         ucu_N_2_o_in_axes2_y = (
         ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y
+            ucu_c_4*ucu_mu_4_o_in_axes4_y
         )
         ucu_N_2_o_in_axes2_z = (
-        ucu_mu_2_o_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
+        ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y
         )
         # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
@@ -2445,9 +2431,9 @@ def _run_dynamics(m, X, V):
         # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         ucu_d_Gamma_2_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz
         ucu_d_Gamma_2_t_2 = (
-        inv_ucu_h_4_t_12*(ucu_J_2_in_spec2_yy + ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z +
-            ucu_e_2_in_axes4_x*(ucu_Jc_2_t + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
-            ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y))
+        inv_ucu_root_2*(ucu_J_2_in_spec2_yy + ucu_c_4*(ucu_Jc_2_t + ucu_J_4_in_spec4_yy*ucu_c_4) +
+            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z + ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 +
+            ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y))
         )
         ucu_d_Gamma_2_in_axes2_z = (
         -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*ucu_w_4_t - ucu_Jc_2_in_axes1_yz -
@@ -2455,36 +2441,36 @@ def _run_dynamics(m, X, V):
         )
         ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x
         ucu_d_Gamma_2_in_axes4_y = (
-        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x
+        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_2_in_axes2_y
         )
         # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_t
         # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         ucu_d_Gamma_1_t = inv_ucu_end_p1_in_axes4_x*ucu_D_1_4
         ucu_d_Gamma_1_t_2 = (
-        inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
+        inv_ucu_root_2*(-ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
         )
         ucu_d_Gamma_1_t_3 = (
         ucu_d_Gamma_1_t*ucu_w_4_t + ucu_d_Gamma_1_t_2*ucu_v_1_t_2 +
-            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
-            ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z) -
-            ucu_h_4_t_13*(ucu_h_4_t_13*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_3*ucu_e_2_in_axes4_y +
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) - ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_c_2 -
+            ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z) - ucu_c_2*(ucu_c_2*(ucu_J_2_in_spec2_zz +
+            ucu_Jc_2_t_3*ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*ucu_c_4) -
+            ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
         )
-        ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13
+        ucu_d_Gamma_1_in_axes1_z = ucu_c_2*ucu_d_Gamma_1_t_2
         ucu_d_Gamma_1_in_axes1_x = -ucu_h_4_in_axes1_y - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
         ucu_d_Gamma_1_in_axes1_y = (
-        ucu_h_4_in_spec4_x*ucu_h_4_t_13 - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
+        ucu_c_2*ucu_h_4_in_spec4_x - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
             ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z
         )
         ucu_d_Gamma_1_in_axes4_z = (
-        ucu_d_Gamma_1_in_axes1_x*ucu_h_4_t_13 + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
+        ucu_c_2*ucu_d_Gamma_1_in_axes1_x + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
         )
         ucu_d_Gamma_1_t_4 = (
-        ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z - ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_13
+        ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z - ucu_c_2*ucu_d_Gamma_1_in_axes1_z
         )
         ucu_d_Gamma_1_in_axes4_y = (
-        ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y - ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x
+        ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_1_t_4
         )
         # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ucu_d_G_in_axes4_xz = (
@@ -2543,10 +2529,10 @@ def _run_dynamics(m, X, V):
             ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
             ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_x +
+            ucu_w_1_in_axes4_x*(ucu_c_4*ucu_d_Gamma_1_in_axes1_y +
             ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
-            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x)
+            ucu_w_2_in_axes4_x*(ucu_c_4*ucu_d_Gamma_2_in_axes2_z +
+            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y)
         )
         ucu_d_c_in_axes4_xy = (
         ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x
@@ -2556,27 +2542,27 @@ def _run_dynamics(m, X, V):
             ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y)
         )
         ucu_d_c_in_axes4_yy = (
-        ucu_h_4_in_spec4_x*(ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y - ucu_v_1_t*ucu_w_1_in_axes4_y)
-            - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+        ucu_h_4_in_spec4_x*(ucu_c_4*ucu_w_2_in_axes4_y - ucu_v_1_t*ucu_w_1_in_axes4_y) -
+            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
             ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
             ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
             ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y
         )
         # (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_o_t = inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
+        ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
         ucu_c_o_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_h_4_t_13 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_c_2 -
             ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_o_t*ucu_v_1_t_2)
         )
         ucu_c_o_in_axes4_x = (
-        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
+        ucu_c_4*ucu_c_o_t_2 + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
             ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_o_t*ucu_e_2_in_axes4_y
         )
         ucu_c_o_in_axes4_y = (
-        ucu_c_o_t*ucu_e_2_in_axes4_x + ucu_c_o_t_2*ucu_e_2_in_axes4_y +
-            ucu_h_4_in_spec4_z*(ucu_W_2_t + ucu_mu_4_o_t) -
-            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
+        ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t +
+            ucu_mu_4_o_t) - ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
         ucu_Q_t = 0.5*ucu_d_c_in_axes4_xx
@@ -2730,11 +2716,11 @@ def _run_dynamics(m, X, V):
         ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
         ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ucu_xx += ucu_Q_xx
@@ -2935,7 +2921,7 @@ def _run_M(m, X):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -2945,89 +2931,88 @@ def _run_M(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
-        ucu_h_4_in_axes1_y = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
         )
-        ucu_h_4_in_spec2_z = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
-        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_h_4_in_axes1_y = ucu_c_4*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_h_4_in_spec2_z = ucu_c_4*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         # (ucu-J_4) inertia tensor of link 4 about the connection point
-        ucu_J_4_in_axes2_xz = (
-        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
-        )
+        ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_c_4 + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -3049,10 +3034,8 @@ def _run_M(m, X):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         ucu_n_m1_x = (
         axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
         )
@@ -3064,21 +3047,21 @@ def _run_M(m, X):
         )
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
-        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x
+        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_c_4
         ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y
         # (ucu-w_2) force part of reciprocal wrench 2
-        ucu_w_2_t = inv_ucu_h_4_t_12*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2
-        ucu_w_2_in_axes4_x = inv_ucu_h_4_t_12*ucu_e_2_in_axes4_y + ucu_e_2_in_axes4_x*ucu_w_2_t
-        ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t - inv_ucu_h_4_t_12*ucu_e_2_in_axes4_x
+        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2
+        ucu_w_2_in_axes4_x = inv_ucu_root_2*ucu_e_2_in_axes4_y + ucu_c_4*ucu_w_2_t
+        ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t - inv_ucu_root_2*ucu_c_4
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
-        ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_h_4_t_12*ucu_n_m1_in_axes2_z
+        ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_root_2*ucu_n_m1_in_axes2_z
         ucu_w_4_t_3 = (
         inv_ucu_v_1_in_axes2_z*(inv_ucu_end_p1_in_axes4_x*ucu_w_4_t - ucu_v_1_t_2*ucu_w_4_t_2)
         )
-        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 - ucu_e_2_in_axes4_x*ucu_w_4_t_3
-        ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_2 - ucu_e_2_in_axes4_y*ucu_w_4_t_3
+        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 - ucu_c_4*ucu_w_4_t_3
+        ucu_w_4_in_axes4_y = -ucu_c_4*ucu_w_4_t_2 - ucu_e_2_in_axes4_y*ucu_w_4_t_3
         # (ucu-o_4) moment part of reciprocal wrench 4
         ucu_o_4_t = inv_ucu_end_p1_in_axes4_x*ucu_n_m1_in_axes4_x
         # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
@@ -3090,45 +3073,41 @@ def _run_M(m, X):
         )
         # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y
-        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yz*ucu_c_4
         ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t_2
-        ucu_Jc_2_t_4 = ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x - ucu_Jc_2_t
+        ucu_Jc_2_t_4 = ucu_J_4_in_spec4_zz*ucu_c_4 - ucu_Jc_2_t
         ucu_Jc_2_in_axes2_xy = (
-        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz -
-            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_c_4
         )
         ucu_Jc_2_in_axes1_yz = (
         ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy + ucu_J_4_in_axes2_xz) -
-            ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x - ucu_J_2_in_spec2_yz -
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
+            ucu_c_2*(ucu_Jc_2_t_3*ucu_c_4 - ucu_J_2_in_spec2_yz - ucu_Jc_2_t_4*ucu_e_2_in_axes4_y)
         )
         # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         ucu_dalpha_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_o_4_t
         # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         ucu_d_Gamma_4_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_spec4_xx
         ucu_d_Gamma_4_t_2 = (
-        inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz + ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
+        inv_ucu_root_2*(ucu_J_4_in_axes2_xz + ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
         )
         ucu_d_Gamma_4_t_3 = (
         inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 + ucu_d_Gamma_4_t_2*ucu_v_1_t_2 -
             ucu_d_Gamma_4_t*ucu_w_4_t)
         )
         ucu_d_Gamma_4_in_axes4_x = (
-        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x -
-            ucu_h_4_in_spec4_z
+        ucu_c_4*ucu_d_Gamma_4_t_3 + ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y - ucu_h_4_in_spec4_z
         )
         ucu_d_Gamma_4_in_axes4_y = (
-        ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x
+        ucu_h_4_in_spec4_y + ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_4_t_2
         )
         # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         ucu_dalpha_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_o_4_t
         # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         ucu_d_Gamma_2_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz
         ucu_d_Gamma_2_t_2 = (
-        inv_ucu_h_4_t_12*(ucu_J_2_in_spec2_yy + ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z +
-            ucu_e_2_in_axes4_x*(ucu_Jc_2_t + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
-            ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y))
+        inv_ucu_root_2*(ucu_J_2_in_spec2_yy + ucu_c_4*(ucu_Jc_2_t + ucu_J_4_in_spec4_yy*ucu_c_4) +
+            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z + ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 +
+            ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y))
         )
         ucu_d_Gamma_2_in_axes2_z = (
         -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*ucu_w_4_t - ucu_Jc_2_in_axes1_yz -
@@ -3136,36 +3115,36 @@ def _run_M(m, X):
         )
         ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x
         ucu_d_Gamma_2_in_axes4_y = (
-        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x
+        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_2_in_axes2_y
         )
         # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_t
         # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         ucu_d_Gamma_1_t = inv_ucu_end_p1_in_axes4_x*ucu_D_1_4
         ucu_d_Gamma_1_t_2 = (
-        inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
+        inv_ucu_root_2*(-ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
         )
         ucu_d_Gamma_1_t_3 = (
         ucu_d_Gamma_1_t*ucu_w_4_t + ucu_d_Gamma_1_t_2*ucu_v_1_t_2 +
-            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
-            ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z) -
-            ucu_h_4_t_13*(ucu_h_4_t_13*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_3*ucu_e_2_in_axes4_y +
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) - ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_c_2 -
+            ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z) - ucu_c_2*(ucu_c_2*(ucu_J_2_in_spec2_zz +
+            ucu_Jc_2_t_3*ucu_e_2_in_axes4_y + ucu_Jc_2_t_4*ucu_c_4) -
+            ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z)
         )
-        ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13
+        ucu_d_Gamma_1_in_axes1_z = ucu_c_2*ucu_d_Gamma_1_t_2
         ucu_d_Gamma_1_in_axes1_x = -ucu_h_4_in_axes1_y - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
         ucu_d_Gamma_1_in_axes1_y = (
-        ucu_h_4_in_spec4_x*ucu_h_4_t_13 - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
+        ucu_c_2*ucu_h_4_in_spec4_x - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
             ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z
         )
         ucu_d_Gamma_1_in_axes4_z = (
-        ucu_d_Gamma_1_in_axes1_x*ucu_h_4_t_13 + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
+        ucu_c_2*ucu_d_Gamma_1_in_axes1_x + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
         )
         ucu_d_Gamma_1_t_4 = (
-        ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z - ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_13
+        ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z - ucu_c_2*ucu_d_Gamma_1_in_axes1_z
         )
         ucu_d_Gamma_1_in_axes4_y = (
-        ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y - ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x
+        ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y - ucu_c_4*ucu_d_Gamma_1_t_4
         )
         # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         ucu_d_G_in_axes4_xz = (
@@ -3222,10 +3201,10 @@ def _run_M(m, X):
             ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
             ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_x +
+            ucu_w_1_in_axes4_x*(ucu_c_4*ucu_d_Gamma_1_in_axes1_y +
             ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
-            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x)
+            ucu_w_2_in_axes4_x*(ucu_c_4*ucu_d_Gamma_2_in_axes2_z +
+            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y)
         )
         ucu_d_c_in_axes4_xy = (
         ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x
@@ -3235,8 +3214,8 @@ def _run_M(m, X):
             ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y)
         )
         ucu_d_c_in_axes4_yy = (
-        ucu_h_4_in_spec4_x*(ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y - ucu_v_1_t*ucu_w_1_in_axes4_y)
-            - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+        ucu_h_4_in_spec4_x*(ucu_c_4*ucu_w_2_in_axes4_y - ucu_v_1_t*ucu_w_1_in_axes4_y) -
+            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
             ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
             ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
             ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y
@@ -3361,11 +3340,11 @@ def _run_M(m, X):
             ucu_M_ta_t_12*ucu_q_y - ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ucu_xx += ucu_Q_xx
@@ -3559,7 +3538,7 @@ def _run_Z(m, X, V):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -3569,60 +3548,68 @@ def _run_Z(m, X, V):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -3642,27 +3629,23 @@ def _run_Z(m, X, V):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -3684,10 +3667,8 @@ def _run_Z(m, X, V):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         ucu_n_m1_x = (
         axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
         )
@@ -3705,11 +3686,11 @@ def _run_Z(m, X, V):
         # (ucu-eta_1) rate at which the joints turn along moment direction 1
         ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -3723,14 +3704,10 @@ def _run_Z(m, X, V):
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        )
-        ucu_omega_2_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
-        )
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
@@ -3763,20 +3740,18 @@ def _run_Z(m, X, V):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
-        )
+        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
@@ -3801,17 +3776,17 @@ def _run_Z(m, X, V):
         ucu_nu_1 = -ucu_nu_1_t_3 - ucu_nu_1_t_6
         # (ucu-qdd_1_o) remainder of: acceleration of joint 1
         ucu_qdd_1_o = (
-        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
         )
         # (ucu-qdd_2_o) remainder of: acceleration of joint 2
         ucu_qdd_2_o = (
-        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
-            ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y)
+        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x + ucu_qdd_1_o*ucu_v_1_t_2 -
+            ucu_c_4*ucu_rel_o_in_axes4_y)
         )
         # (ucu-alpha_1_o) remainder of: angular acceleration of link 1
         ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
-        ucu_alpha_1_o_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1_o
+        ucu_alpha_1_o_in_axes2_y = -ucu_c_2*ucu_qdd_1_o
         # (ucu-alpha_2_o) remainder of: angular acceleration of link 2
         ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
         ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -3822,11 +3797,10 @@ def _run_Z(m, X, V):
         ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
         # (ucu-alpha_4_o) remainder of: angular acceleration of link 4
         ucu_alpha_4_o_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_e_2_in_axes4_x*ucu_qdd_2_o
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2_o
         )
         ucu_alpha_4_o_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x -
+        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_c_4 -
             ucu_omega_2_in_axes4_x*ucu_qd_4
         )
         ucu_alpha_4_o_in_axes4_z = (
@@ -3893,10 +3867,10 @@ def _run_Z(m, X, V):
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
-        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
         ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
         ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
         ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
@@ -3926,29 +3900,29 @@ def _run_Z(m, X, V):
         ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
         ucu_N_2_o_in_axes2_y = (
         ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y
+            ucu_c_4*ucu_mu_4_o_in_axes4_y
         )
         ucu_N_2_o_in_axes2_z = (
-        ucu_mu_2_o_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
+        ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y
         )
         # (ucu-G_m1_o) remainder of: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_o_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z
         # (ucu-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_o_t = inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
+        ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z + ucu_G_m1_o_t*ucu_n_m1_in_axes2_z)
         ucu_c_o_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_h_4_t_13 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_w_4_t + ucu_N_2_o_in_axes2_y*ucu_c_2 -
             ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_o_t*ucu_v_1_t_2)
         )
         ucu_c_o_in_axes4_x = (
-        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
+        ucu_c_4*ucu_c_o_t_2 + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_o_t) -
             ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_o_t*ucu_e_2_in_axes4_y
         )
         ucu_c_o_in_axes4_y = (
-        ucu_c_o_t*ucu_e_2_in_axes4_x + ucu_c_o_t_2*ucu_e_2_in_axes4_y +
-            ucu_h_4_in_spec4_z*(ucu_W_2_t + ucu_mu_4_o_t) -
-            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
+        ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t +
+            ucu_mu_4_o_t) - ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-c_m_o) remainder of: moment of the leg on the platform without actuation
         ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*ucu_n_m1_in_axes4_x
@@ -3979,11 +3953,11 @@ def _run_Z(m, X, V):
             axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ucu_x += ucu_U_x
@@ -4060,7 +4034,7 @@ def _run_H(m, X):
             ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_2,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4070,37 +4044,37 @@ def _run_H(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
         ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z
         ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
         ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_root_2)
+            > _TOLERANCE * 0.8)
         )
         # (ucu-w_3) force part of reciprocal wrench 3
         out_H[_H_ucu[0][leg]] = axis_z_ucu_axes4_x
@@ -4268,7 +4242,7 @@ def _run_required(m, X, V, A):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4278,60 +4252,68 @@ def _run_required(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -4351,27 +4333,23 @@ def _run_required(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -4393,21 +4371,19 @@ def _run_required(m, X, V, A):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -4424,14 +4400,10 @@ def _run_required(m, X, V, A):
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        )
-        ucu_omega_2_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
-        )
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
@@ -4470,20 +4442,18 @@ def _run_required(m, X, V, A):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
         ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
-        )
+        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
@@ -4515,13 +4485,13 @@ def _run_required(m, X, V, A):
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
+        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_c_4*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_4) acceleration of joint 4
         ucu_qdd_4_t = (
@@ -4530,7 +4500,7 @@ def _run_required(m, X, V, A):
         )
         # (ucu-alpha_1) angular acceleration of link 1
         ucu_alpha_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1
-        ucu_alpha_1_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1
+        ucu_alpha_1_in_axes2_y = -ucu_c_2*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
         ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
         ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -4541,11 +4511,10 @@ def _run_required(m, X, V, A):
         ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
         # (ucu-alpha_4) angular acceleration of link 4
         ucu_alpha_4_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_e_2_in_axes4_x*ucu_qdd_2
+        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2
         )
         ucu_alpha_4_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_x -
+        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_c_4 -
             ucu_omega_2_in_axes4_x*ucu_qd_4_2
         )
         ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - ucu_qdd_4_t
@@ -4600,10 +4569,10 @@ def _run_required(m, X, V, A):
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
-        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
         ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
         ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
         ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
@@ -4628,29 +4597,27 @@ def _run_required(m, X, V, A):
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
         ucu_N_2_in_axes2_y = (
-        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - ucu_c_4*ucu_mu_4_in_axes4_y
         )
         ucu_N_2_in_axes2_z = (
-        ucu_mu_2_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
         )
         # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_t = inv_ucu_h_4_t_12*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
+        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
         ucu_c_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_h_4_t_13 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_c_2 -
             ucu_N_2_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_t*ucu_v_1_t_2)
         )
         ucu_c_in_axes4_x = (
-        ucu_c_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
+        ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
             ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_t*ucu_e_2_in_axes4_y
         )
         ucu_c_in_axes4_y = (
-        ucu_c_t*ucu_e_2_in_axes4_x + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t
-            + ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
+        ucu_c_4*ucu_c_t + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t +
+            ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
             ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         ucu_c_x = (
@@ -4679,11 +4646,11 @@ def _run_required(m, X, V, A):
         ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
         ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ucu_c_x
@@ -4771,7 +4738,7 @@ def _run_inverse_kinematics(m, X):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4781,77 +4748,83 @@ def _run_inverse_kinematics(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-q_1) displacement of joint 1
+        ucu_q_1 = atan2(ucu_s_1, ucu_c_1)
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        ucu_q_2 = atan2(-ucu_e_1_in_axes4_z, ucu_c_2)
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
-        # (ucu-q_1) displacement of joint 1
-        ucu_q_1 = atan2(ucu_h_4_t_10, ucu_h_4_t_9)
-        # (ucu-q_2) displacement of joint 2
-        ucu_q_2 = atan2(-ucu_e_1_in_axes4_z, ucu_h_4_t_13)
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
         # (ucu-q_4) displacement of joint 4
-        ucu_q_4 = atan2(-ucu_e_2_in_axes4_y, ucu_e_2_in_axes4_x)
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
+        ucu_q_4 = atan2(-ucu_e_2_in_axes4_y, ucu_c_4)
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0)
         )
         # (ucu-q_1) displacement of joint 1
         out_q[_q_ucu[0][leg]] = ucu_q_1
         # (ucu-q_2) displacement of joint 2
         out_q[_q_ucu[1][leg]] = ucu_q_2
         # (ucu-q_3) displacement of joint 3
-        out_q[_q_ucu[2][leg]] = ucu_h_4_t_12
+        out_q[_q_ucu[2][leg]] = ucu_root_2
         # (ucu-q_4) displacement of joint 4
         out_q[_q_ucu[3][leg]] = ucu_q_4
     return ok, (out_q,)
@@ -4920,7 +4893,7 @@ def _run_joint_rates(m, X, V):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -4930,60 +4903,68 @@ def _run_joint_rates(m, X, V):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -5003,27 +4984,23 @@ def _run_joint_rates(m, X, V):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -5045,21 +5022,19 @@ def _run_joint_rates(m, X, V):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -5075,11 +5050,11 @@ def _run_joint_rates(m, X, V):
             ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x - ucu_qd_4_t_2)
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (ucu-qd_1) rate of joint 1
         out_qd[_qd_ucu[0][leg]] = ucu_qd_1
@@ -5185,7 +5160,7 @@ def _run_joint_accelerations(m, X, V, A):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -5195,60 +5170,68 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -5268,27 +5251,23 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -5310,21 +5289,19 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -5341,14 +5318,10 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        )
-        ucu_omega_2_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
-        )
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
@@ -5382,21 +5355,19 @@ def _run_joint_accelerations(m, X, V, A):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
         ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
-        ucu_rel_in_axes4_z = ucu_S_ddot_in_axes4_z + ucu_W_2_t_3*ucu_h_4_t_12
+        ucu_rel_in_axes4_z = ucu_S_ddot_in_axes4_z + ucu_W_2_t_3*ucu_root_2
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
-        )
+        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
@@ -5428,13 +5399,13 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
+        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_c_4*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_4) acceleration of joint 4
         ucu_qdd_4_t = (
@@ -5442,11 +5413,11 @@ def _run_joint_accelerations(m, X, V, A):
             ucu_n_m1_in_axes2_z*ucu_qdd_2)
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (ucu-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ucu[0][leg]] = ucu_qdd_1
@@ -5560,7 +5531,7 @@ def _run_legs(m, X, V, A):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -5570,60 +5541,68 @@ def _run_legs(m, X, V, A):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-S_dot) velocity of the connection point
         ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
         ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
@@ -5643,27 +5622,23 @@ def _run_legs(m, X, V, A):
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_9 + ucu_S_dot_t_5*ucu_h_4_t_10
-        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_h_4_t_13
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z + ucu_S_dot_t_7*ucu_c_2
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
-        ucu_v_1_t_2 = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y - ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 + ucu_h_4_t_13*ucu_h_4_t_17
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
-        ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t
-        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t
+        ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 + ucu_e_1_in_axes4_z*ucu_root_4_t_3
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_n_m1_t = ucu_c_4*ucu_e_1_in_axes4_z
+        ucu_n_m1_t_2 = -ucu_c_1*ucu_n_m1_t - ucu_e_2_in_axes4_y*ucu_s_1
+        ucu_n_m1_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_n_m1_t*ucu_s_1
         axis_y_ucu_axes4_x = (
         ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
             ucu_base_frame_xz*ucu_e_1_in_axes4_y
@@ -5685,21 +5660,19 @@ def _run_legs(m, X, V, A):
         axis_x_ucu_axes4_z = (
         axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
-        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
+        ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x
         # (ucu-w_1) force part of reciprocal wrench 1
         inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
         # (ucu-w_4) force part of reciprocal wrench 4
         ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x + ucu_n_m1_in_axes4_x*ucu_v_1_t
         inv_ucu_end_p1_in_axes4_x = 1.0/ucu_end_p1_in_axes4_x
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_h_4_t_9 - ucu_S_dot_t_4*ucu_h_4_t_10)
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*ucu_c_1 - ucu_S_dot_t_4*ucu_s_1)
         # (ucu-qd_2) rate of joint 2
         ucu_qd_2 = (
-        inv_ucu_h_4_t_12*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
-            ucu_S_dot_t_6*ucu_h_4_t_13)
+        inv_ucu_root_2*(ucu_S_dot_t_7*ucu_e_1_in_axes4_z + ucu_qd_1*ucu_v_1_t_2 -
+            ucu_S_dot_t_6*ucu_c_2)
         )
         # (ucu-qd_4) rate of joint 4
         ucu_qd_4_t = ucu_qd_1*ucu_w_4_t
@@ -5716,14 +5689,10 @@ def _run_legs(m, X, V, A):
         )
         # (ucu-omega_1) angular velocity of link 1
         ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
-        ucu_omega_1_in_axes2_y = -ucu_h_4_t_13*ucu_qd_1
+        ucu_omega_1_in_axes2_y = -ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
-        )
-        ucu_omega_2_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
-        )
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_c_4*ucu_omega_1_in_axes2_y
         # (ucu-W_2) centripetal tensor of link 2
         ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
         ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
@@ -5762,20 +5731,18 @@ def _run_legs(m, X, V, A):
         # (ucu-bias) acceleration of the connection point at zero joint accelerations
         ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
         ucu_bias_in_axes4_x = (
-        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_c_4 +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
         )
         ucu_bias_in_axes4_y = (
-        ucu_h_4_t_12*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
             ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
         ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
         ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_end_p1_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_e_2_in_axes4_x*ucu_h_4_t_18
-        )
+        ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x - ucu_c_4*ucu_root_4_t_5
         ucu_omega_in_axes4_y = (
         axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
@@ -5807,13 +5774,13 @@ def _run_legs(m, X, V, A):
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1_2
         # (ucu-qdd_1) acceleration of joint 1
         ucu_qdd_1 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_in_axes4_x +
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_x +
             ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_2) acceleration of joint 2
         ucu_qdd_2 = (
-        inv_ucu_h_4_t_12*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
-            ucu_e_2_in_axes4_x*ucu_rel_in_axes4_y)
+        inv_ucu_root_2*(ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x + ucu_qdd_1*ucu_v_1_t_2 -
+            ucu_c_4*ucu_rel_in_axes4_y)
         )
         # (ucu-qdd_4) acceleration of joint 4
         ucu_qdd_4_t = (
@@ -5822,7 +5789,7 @@ def _run_legs(m, X, V, A):
         )
         # (ucu-alpha_1) angular acceleration of link 1
         ucu_alpha_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1
-        ucu_alpha_1_in_axes2_y = -ucu_h_4_t_13*ucu_qdd_1
+        ucu_alpha_1_in_axes2_y = -ucu_c_2*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
         ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
         ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
@@ -5833,11 +5800,10 @@ def _run_legs(m, X, V, A):
         ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
         # (ucu-alpha_4) angular acceleration of link 4
         ucu_alpha_4_in_axes4_x = (
-        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_e_2_in_axes4_x*ucu_qdd_2
+        ucu_zeta_4_in_axes4_x_2 + ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_y + ucu_c_4*ucu_qdd_2
         )
         ucu_alpha_4_in_axes4_y = (
-        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_e_2_in_axes4_x -
+        ucu_e_2_in_axes4_y*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_c_4 -
             ucu_omega_2_in_axes4_x*ucu_qd_4_2
         )
         ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x - ucu_qdd_4_t
@@ -5892,10 +5858,10 @@ def _run_legs(m, X, V, A):
         ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
         ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
         ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
-        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
-        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
         ucu_mu_2_t_8 = ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 - ucu_mu_2_t_6)
         ucu_mu_2_t_9 = ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6)
         ucu_mu_2_t_10 = ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 - ucu_mu_2_t_5)
@@ -5920,29 +5886,27 @@ def _run_legs(m, X, V, A):
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
         ucu_N_2_in_axes2_y = (
-        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - ucu_c_4*ucu_mu_4_in_axes4_y
         )
         ucu_N_2_in_axes2_z = (
-        ucu_mu_2_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
+        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y
         )
         # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         ucu_G_m1_t = inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_t = inv_ucu_h_4_t_12*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
+        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z + ucu_G_m1_t*ucu_n_m1_in_axes2_z)
         ucu_c_t_2 = (
-        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_h_4_t_13 -
+        inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*ucu_w_4_t + ucu_N_2_in_axes2_y*ucu_c_2 -
             ucu_N_2_in_axes2_x*ucu_e_1_in_axes4_z - ucu_c_t*ucu_v_1_t_2)
         )
         ucu_c_in_axes4_x = (
-        ucu_c_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
+        ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_W_2_t_2 + ucu_mu_4_t_2) -
             ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
             ucu_c_t*ucu_e_2_in_axes4_y
         )
         ucu_c_in_axes4_y = (
-        ucu_c_t*ucu_e_2_in_axes4_x + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t
-            + ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
+        ucu_c_4*ucu_c_t + ucu_c_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_W_2_t +
+            ucu_mu_4_t_2) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y -
             ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
         )
         # (ucu-c_m) moment of the leg on the platform without actuation
@@ -5967,11 +5931,11 @@ def _run_legs(m, X, V, A):
             axis_z_ucu_axes4_z*ucu_c_true_in_axes4_z
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ucu[0][leg]] = ucu_c_true_x
@@ -6055,7 +6019,7 @@ def _run_potential(m, X):
             ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
             ucu_platform_point_z, ucu_potential_t, ucu_potential_t_2, ucu_potential_t_3,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -6065,86 +6029,90 @@ def _run_potential(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
-        ucu_h_4_in_axes1_y = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
         )
-        ucu_h_4_in_spec2_z = (
-        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
-        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_h_4_in_axes1_y = ucu_c_4*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z
+        ucu_h_4_in_spec2_z = ucu_c_4*ucu_h_4_in_spec4_z - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_t_7 = ucu_h_4_t_10*ucu_mu_2_t_2 + ucu_h_4_t_9*ucu_mu_2_t
-        ucu_g_in_axes2_z = ucu_h_4_t_9*ucu_mu_2_t_2 - ucu_h_4_t_10*ucu_mu_2_t
-        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_13*ucu_mu_2_t_7
-        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_h_4_t_13*ucu_mu_2_t_3
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_e_1_in_axes4_z*ucu_mu_2_t_3
+        ucu_g_in_axes2_y = ucu_e_1_in_axes4_z*ucu_mu_2_t_7 - ucu_c_2*ucu_mu_2_t_3
         # (potential) potential energy
-        ucu_potential_t_4 = ucu_h_4_t_10*ucu_potential_t_2 + ucu_h_4_t_9*ucu_potential_t
+        ucu_potential_t_4 = ucu_c_1*ucu_potential_t + ucu_potential_t_2*ucu_s_1
         ucu_potential_t_5 = (
         ucu_g_in_axes2_y*(ucu_h_2_in_spec2_z + ucu_h_4_in_spec2_z -
-            ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_4 -
-            ucu_h_4_t_13*ucu_potential_t_3)) - ucu_g_in_axes2_x*(ucu_h_2_in_spec2_x +
-            ucu_h_4_in_spec4_x + ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_3 +
-            ucu_h_4_t_13*ucu_potential_t_4)) - ucu_g_in_axes2_z*(ucu_h_2_in_spec2_y +
-            ucu_h_4_in_axes1_y + ucu_link2_mass*(ucu_h_4_t_9*ucu_potential_t_2 -
-            ucu_h_4_t_10*ucu_potential_t))
+            ucu_link2_mass*(ucu_e_1_in_axes4_z*ucu_potential_t_4 - ucu_c_2*ucu_potential_t_3)) -
+            ucu_g_in_axes2_x*(ucu_h_2_in_spec2_x + ucu_h_4_in_spec4_x +
+            ucu_link2_mass*(ucu_c_2*ucu_potential_t_4 + ucu_e_1_in_axes4_z*ucu_potential_t_3)) -
+            ucu_g_in_axes2_z*(ucu_h_2_in_spec2_y + ucu_h_4_in_axes1_y +
+            ucu_link2_mass*(ucu_c_1*ucu_potential_t_2 - ucu_potential_t*ucu_s_1))
         )
         ok = (
-        ok & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0)
+        ok & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0)
         )
         # (potential) potential energy
         potential_ucu += ucu_potential_t_5
@@ -6215,7 +6183,7 @@ def _run_condition(m, X):
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-h_4) first moment of link 4 about the connection point
+        # (ucu-S) from the base point to the connection point
         ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
@@ -6225,81 +6193,85 @@ def _run_condition(m, X):
         ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
-        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
-        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
-        ucu_h_4_t_4 = (
-        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
+        ucu_S_in_turn1_x = (
+        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
         )
-        ucu_h_4_t_5 = (
-        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3
+        ucu_S_in_turn1_y = (
+        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
         )
-        ucu_h_4_t_6 = (
-        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3
+        ucu_S_in_turn1_z = (
+        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
-        ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
-        ucu_h_4_t_8 = ucu_branch_1*sqrt(ucu_h_4_t_7)
-        inv_ucu_h_4_t_8 = 1.0/ucu_h_4_t_8
-        ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4
-        ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5
-        ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7
-        ucu_h_4_t_12 = ucu_branch_2*sqrt(ucu_h_4_t_11)
-        inv_ucu_h_4_t_12 = 1.0/ucu_h_4_t_12
-        ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8
-        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6
-        ucu_h_4_t_14 = (
+        # (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x + ucu_S_in_turn1_y*ucu_S_in_turn1_y
+        ucu_root_1 = ucu_branch_1*sqrt(ucu_root_1_t)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y
+        # (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch
+        ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t
+        ucu_root_2 = ucu_branch_2*sqrt(ucu_root_2_t)
+        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_ucu_root_2 = 1.0/ucu_root_2
+        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        # (ucu-q_2) displacement of joint 2
+        ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z
+        # (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch
+        ucu_root_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_h_4_t_15 = (
+        ucu_root_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_h_4_t_16 = (
+        ucu_root_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9
-        ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14
-        ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16
-        ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_h_4_t_18*ucu_h_4_t_18
-        ucu_h_4_t_20 = ucu_branch_4*sqrt(ucu_h_4_t_19)
-        inv_ucu_h_4_t_20 = 1.0/ucu_h_4_t_20
-        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x
-        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18
+        ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1
+        ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1
+        ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3
+        ucu_root_4_t_6 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_root_4_t_5*ucu_root_4_t_5
+        )
+        ucu_root_4 = ucu_branch_4*sqrt(ucu_root_4_t_6)
+        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x
+        # (ucu-q_4) displacement of joint 4
+        ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13
-        ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13
-        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12
-        ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t
-        ucu_v_1_in_axes2_z = (
-        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
-        )
+        ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y
+        ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t
-        axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2
-        axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3
-        ucu_end_p1_in_axes4_x = (
-        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_h_4_t_18
-        )
+        axis_z_ucu_axes4_x = inv_ucu_root_2*ucu_S_x
+        axis_z_ucu_axes4_y = inv_ucu_root_2*ucu_S_y
+        axis_z_ucu_axes4_z = inv_ucu_root_2*ucu_S_z
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x + ucu_e_2_in_axes4_y*ucu_root_4_t_5
         # (ucu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ucu_pivot_size = abs(ucu_h_4_t_7)
-        ucu_pivot_size_2 = abs(ucu_h_4_t_11)
-        ucu_pivot_size_3 = abs(ucu_h_4_t_19)
+        ucu_pivot_size = abs(ucu_root_1_t)
+        ucu_pivot_size_2 = abs(ucu_root_2_t)
+        ucu_pivot_size_3 = abs(ucu_root_4_t_6)
         ucu_pivot_size_4 = abs(ucu_end_p1_in_axes4_x)
-        ucu_pivot_size_5 = abs(ucu_h_4_t_12)
+        ucu_pivot_size_5 = abs(ucu_root_2)
         ucu_pivot_size_6 = abs(ucu_v_1_in_axes2_z)
         ucu_least_pivots = (
         least(least(least(least(least(1.25*sqrt(ucu_pivot_size), 1.25*sqrt(ucu_pivot_size_2)),
@@ -6318,11 +6290,11 @@ def _run_condition(m, X):
         ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 + ucu_spread_t_3*ucu_spread_t_3
         )
         clear = (
-        clear & (abs(ucu_h_4_t_7) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_11) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_h_4_t_19) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
-            _TOLERANCE * 1.0) & (abs(ucu_h_4_t_12) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z)
-            > _TOLERANCE * 0.8)
+        clear & (abs(ucu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_root_4_t_6) > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) >
+            _TOLERANCE * 1.0) & (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) >
+            _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_ucu += ucu_spread_t_4

@@ -786,7 +786,6 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_rho_tip_3_in_spec3_x = uhs_link3_centre_of_mass_x -
             uhs_platform_joint_offset_x;
         /* (uhs-h_3) first moment of link 3 about the connection point */
-        const real inv_uhs_joint3_pitch = 1/uhs_joint3_pitch;
         const real uhs_h_3_in_spec3_x = uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
         const real uhs_h_3_in_spec3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass;
         const real uhs_h_3_in_spec3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass;
@@ -807,6 +806,8 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
             uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass;
         const real uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 -
             uhs_J_3_t_4);
+        /* (uhs-q_3) displacement of joint 3 */
+        const real inv_uhs_joint3_pitch = 1/uhs_joint3_pitch;
         /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
         const real uhs_bias_t = 2*uhs_joint3_pitch;
         /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
@@ -1666,10 +1667,10 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real uhs_q_x, uhs_q_y, uhs_q_z, uhs_h_3_t_7, uhs_h_3_t_8, uhs_h_3_t_9, uhs_h_3_t_10, uhs_h_3_t_11,
-        uhs_e_2_in_axes3_x, uhs_h_3_t_12, uhs_h_3_in_spec2_z, uhs_c_1, uhs_s_1, uhs_c_2,
-        uhs_e_1_in_axes3_z, uhs_e_1_in_axes3_x, uhs_e_1_in_axes3_y, uhs_v_1_in_axes2_z, uhs_v_1_t_2,
-        inv_uhs_v_1_in_axes2_z, inv_uhs_h_3_t_9, axis_z_uhs_axes3_x, axis_z_uhs_axes3_y,
+    real uhs_q_x, uhs_q_y, uhs_q_z, uhs_rho2_1, uhs_c_1, uhs_s_1, uhs_rho2_2, uhs_root_2, uhs_c_2,
+        uhs_e_1_in_axes3_z, uhs_x_3_in_axes2_x, uhs_q_3_t, uhs_c_3, uhs_s_3, uhs_h_3_in_spec2_z,
+        uhs_e_1_in_axes3_x, uhs_e_1_in_axes3_y, uhs_v_1_in_axes2_z, uhs_v_1_t_2,
+        inv_uhs_v_1_in_axes2_z, inv_uhs_root_2, axis_z_uhs_axes3_x, axis_z_uhs_axes3_y,
         axis_z_uhs_axes3_z, uhs_w_3_x, uhs_w_3_y, uhs_w_3_z, axis_y_uhs_axes3_x, axis_y_uhs_axes3_y,
         axis_y_uhs_axes3_z, axis_x_uhs_axes3_x, axis_x_uhs_axes3_y, axis_x_uhs_axes3_z,
         uhs_g_in_axes2_z, uhs_g_in_axes2_x, uhs_g_in_axes2_y, uhs_mu_2_t_7, uhs_mu_2_t_8,
@@ -1690,7 +1691,7 @@ typedef struct {
 INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
     *X, values_uhs *v)
 {
-    /* (uhs-h_3) first moment of link 3 about the connection point */
+    /* (uhs-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1707,62 +1708,69 @@ INLINE void stage_uhs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->uhs_q_z = R_zx*m->uhs_platform_point_x[i] + R_zy*m->uhs_platform_point_y[i] +
         R_zz*m->uhs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real uhs_h_3_t = t_x - m->uhs_base_point_x[i] + v->uhs_q_x;
+    const real uhs_S_x = t_x - m->uhs_base_point_x[i] + v->uhs_q_x;
     const real t_y = X[1*w + j];
-    const real uhs_h_3_t_2 = t_y - m->uhs_base_point_y[i] + v->uhs_q_y;
+    const real uhs_S_y = t_y - m->uhs_base_point_y[i] + v->uhs_q_y;
     const real t_z = X[2*w + j];
-    const real uhs_h_3_t_3 = t_z - m->uhs_base_point_z[i] + v->uhs_q_z;
-    const real uhs_h_3_t_4 = m->uhs_base_frame_xx[i]*uhs_h_3_t +
-        m->uhs_base_frame_yx[i]*uhs_h_3_t_2 + m->uhs_base_frame_zx[i]*uhs_h_3_t_3;
-    const real uhs_h_3_t_5 = m->uhs_base_frame_xy[i]*uhs_h_3_t +
-        m->uhs_base_frame_yy[i]*uhs_h_3_t_2 + m->uhs_base_frame_zy[i]*uhs_h_3_t_3;
-    const real uhs_h_3_t_6 = m->uhs_base_frame_xz[i]*uhs_h_3_t +
-        m->uhs_base_frame_yz[i]*uhs_h_3_t_2 + m->uhs_base_frame_zz[i]*uhs_h_3_t_3;
-    v->uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5;
-    v->uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + v->uhs_h_3_t_7;
-    v->uhs_h_3_t_9 = m->uhs_branch_2[i]*root(v->uhs_h_3_t_8);
-    v->uhs_h_3_t_10 = v->uhs_h_3_t_9 - m->uhs_joint3_offset_x[i];
-    v->uhs_h_3_t_11 = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
-        v->uhs_h_3_t_10);
-    v->uhs_e_2_in_axes3_x = cosine(v->uhs_h_3_t_11);
-    v->uhs_h_3_t_12 = -sine(v->uhs_h_3_t_11);
-    v->uhs_h_3_in_spec2_z = v->uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_z[i] +
-        m->uhs_h_3_in_spec3_y[i]*v->uhs_h_3_t_12;
+    const real uhs_S_z = t_z - m->uhs_base_point_z[i] + v->uhs_q_z;
+    const real uhs_S_in_turn1_x = uhs_S_x*m->uhs_base_frame_xx[i] +
+        uhs_S_y*m->uhs_base_frame_yx[i] + uhs_S_z*m->uhs_base_frame_zx[i];
+    const real uhs_S_in_turn1_y = uhs_S_x*m->uhs_base_frame_xy[i] +
+        uhs_S_y*m->uhs_base_frame_yy[i] + uhs_S_z*m->uhs_base_frame_zy[i];
+    const real uhs_S_in_turn1_z = uhs_S_x*m->uhs_base_frame_xz[i] +
+        uhs_S_y*m->uhs_base_frame_yz[i] + uhs_S_z*m->uhs_base_frame_zz[i];
+    /* (uhs-rho2_1) squared amplitude */
+    v->uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y;
     /* (uhs-root_1) root, with the sign of the branch */
-    const real uhs_root_1 = m->uhs_branch_1[i]*root(v->uhs_h_3_t_7);
+    const real uhs_root_1 = m->uhs_branch_1[i]*root(v->uhs_rho2_1);
     /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_uhs_h_3_t_7 = 1/v->uhs_h_3_t_7;
-    v->uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1;
+    const real inv_uhs_rho2_1 = 1/v->uhs_rho2_1;
+    v->uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1;
     /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-    v->uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1;
+    v->uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1;
+    /* (uhs-rho2_2) squared amplitude */
+    v->uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + v->uhs_rho2_1;
+    /* (uhs-root_2) root, with the sign of the branch */
+    v->uhs_root_2 = m->uhs_branch_2[i]*root(v->uhs_rho2_2);
     /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-    const real inv_uhs_h_3_t_8 = 1/v->uhs_h_3_t_8;
-    v->uhs_c_2 = inv_uhs_h_3_t_8*v->uhs_h_3_t_9*uhs_root_1;
+    const real inv_uhs_rho2_2 = 1/v->uhs_rho2_2;
+    v->uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*v->uhs_root_2;
     /* (uhs-q_2) displacement of joint 2 */
-    v->uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*v->uhs_h_3_t_9;
+    v->uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*v->uhs_root_2;
+    /* (uhs-x_3) from the origin of joint 3 to the connection point */
+    v->uhs_x_3_in_axes2_x = v->uhs_root_2 - m->uhs_joint3_offset_x[i];
+    /* (uhs-q_3) displacement of joint 3 */
+    v->uhs_q_3_t = m->inv_uhs_joint3_pitch[i]*(m->uhs_platform_joint_offset_x[i] -
+        v->uhs_x_3_in_axes2_x);
+    /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
+    v->uhs_c_3 = cosine(v->uhs_q_3_t);
+    /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
+    v->uhs_s_3 = -sine(v->uhs_q_3_t);
+    /* (uhs-h_3) first moment of link 3 about the connection point */
+    v->uhs_h_3_in_spec2_z = v->uhs_c_3*m->uhs_h_3_in_spec3_z[i] +
+        m->uhs_h_3_in_spec3_y[i]*v->uhs_s_3;
     /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-    v->uhs_e_1_in_axes3_x = v->uhs_c_2*v->uhs_h_3_t_12;
-    v->uhs_e_1_in_axes3_y = v->uhs_c_2*v->uhs_e_2_in_axes3_x;
-    const real uhs_v_1_in_axes3_x = v->uhs_e_1_in_axes3_y*v->uhs_h_3_t_9;
-    const real uhs_v_1_t = v->uhs_e_1_in_axes3_x*v->uhs_h_3_t_9;
-    v->uhs_v_1_in_axes2_z = v->uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x +
-        v->uhs_h_3_t_12*uhs_v_1_t;
-    v->uhs_v_1_t_2 = v->uhs_h_3_t_12*uhs_v_1_in_axes3_x - v->uhs_e_2_in_axes3_x*uhs_v_1_t;
+    v->uhs_e_1_in_axes3_x = v->uhs_c_2*v->uhs_s_3;
+    v->uhs_e_1_in_axes3_y = v->uhs_c_2*v->uhs_c_3;
+    const real uhs_v_1_in_axes3_x = v->uhs_e_1_in_axes3_y*v->uhs_root_2;
+    const real uhs_v_1_t = v->uhs_e_1_in_axes3_x*v->uhs_root_2;
+    v->uhs_v_1_in_axes2_z = v->uhs_c_3*uhs_v_1_in_axes3_x + v->uhs_s_3*uhs_v_1_t;
+    v->uhs_v_1_t_2 = v->uhs_s_3*uhs_v_1_in_axes3_x - v->uhs_c_3*uhs_v_1_t;
     /* (uhs-w_1) reciprocal vector 1 */
     v->inv_uhs_v_1_in_axes2_z = 1/v->uhs_v_1_in_axes2_z;
     /* (uhs-w_2) reciprocal vector 2 */
-    v->inv_uhs_h_3_t_9 = 1/v->uhs_h_3_t_9;
+    v->inv_uhs_root_2 = 1/v->uhs_root_2;
     /* (uhs-w_3) reciprocal vector 3 */
-    v->axis_z_uhs_axes3_x = v->inv_uhs_h_3_t_9*uhs_h_3_t;
-    v->axis_z_uhs_axes3_y = v->inv_uhs_h_3_t_9*uhs_h_3_t_2;
-    v->axis_z_uhs_axes3_z = v->inv_uhs_h_3_t_9*uhs_h_3_t_3;
+    v->axis_z_uhs_axes3_x = v->inv_uhs_root_2*uhs_S_x;
+    v->axis_z_uhs_axes3_y = v->inv_uhs_root_2*uhs_S_y;
+    v->axis_z_uhs_axes3_z = v->inv_uhs_root_2*uhs_S_z;
     v->uhs_w_3_x = v->axis_z_uhs_axes3_x*m->inv_uhs_joint3_pitch[i];
     v->uhs_w_3_y = v->axis_z_uhs_axes3_y*m->inv_uhs_joint3_pitch[i];
     v->uhs_w_3_z = v->axis_z_uhs_axes3_z*m->inv_uhs_joint3_pitch[i];
     /* (uhs-u_1) centripetal acceleration of the connection point */
-    const real uhs_u_1_t = v->uhs_e_1_in_axes3_z*v->uhs_e_2_in_axes3_x;
-    const real uhs_u_1_t_2 = v->uhs_h_3_t_12*v->uhs_s_1 - v->uhs_c_1*uhs_u_1_t;
-    const real uhs_u_1_t_3 = -v->uhs_c_1*v->uhs_h_3_t_12 - v->uhs_s_1*uhs_u_1_t;
+    const real uhs_u_1_t = v->uhs_c_3*v->uhs_e_1_in_axes3_z;
+    const real uhs_u_1_t_2 = v->uhs_s_1*v->uhs_s_3 - v->uhs_c_1*uhs_u_1_t;
+    const real uhs_u_1_t_3 = -v->uhs_c_1*v->uhs_s_3 - v->uhs_s_1*uhs_u_1_t;
     v->axis_y_uhs_axes3_x = m->uhs_base_frame_xz[i]*v->uhs_e_1_in_axes3_y +
         m->uhs_base_frame_xx[i]*uhs_u_1_t_2 + m->uhs_base_frame_xy[i]*uhs_u_1_t_3;
     v->axis_y_uhs_axes3_y = m->uhs_base_frame_yz[i]*v->uhs_e_1_in_axes3_y +
@@ -1821,7 +1829,7 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real uhs_qd_2_t = uhs_S_dot_x*m->uhs_base_frame_xz[i] +
         uhs_S_dot_y*m->uhs_base_frame_yz[i] + uhs_S_dot_z*m->uhs_base_frame_zz[i];
     const real uhs_qd_2_t_2 = v->uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*v->uhs_s_1;
-    v->uhs_qd_2 = v->inv_uhs_h_3_t_9*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
+    v->uhs_qd_2 = v->inv_uhs_root_2*(v->uhs_e_1_in_axes3_z*uhs_qd_2_t_2 -
         v->uhs_c_2*uhs_qd_2_t + v->uhs_qd_1*v->uhs_v_1_t_2);
     /* (uhs-qd_3) rate of joint 3 */
     v->uhs_qd_3 = m->inv_uhs_joint3_pitch[i]*(v->uhs_c_2*uhs_qd_2_t_2 +
@@ -1830,10 +1838,10 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real uhs_omega_1_in_axes2_x = v->uhs_e_1_in_axes3_z*v->uhs_qd_1;
     const real uhs_omega_1_in_axes2_y = -v->uhs_c_2*v->uhs_qd_1;
     /* (uhs-omega_2) angular velocity of link 2 */
-    const real uhs_omega_2_in_axes3_x = v->uhs_e_2_in_axes3_x*v->uhs_qd_2 -
-        v->uhs_h_3_t_12*uhs_omega_1_in_axes2_y;
-    const real uhs_omega_2_in_axes3_y = -v->uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y -
-        v->uhs_h_3_t_12*v->uhs_qd_2;
+    const real uhs_omega_2_in_axes3_x = v->uhs_c_3*v->uhs_qd_2 -
+        uhs_omega_1_in_axes2_y*v->uhs_s_3;
+    const real uhs_omega_2_in_axes3_y = -v->uhs_c_3*uhs_omega_1_in_axes2_y -
+        v->uhs_qd_2*v->uhs_s_3;
     /* (uhs-W_2) centripetal tensor of link 2 */
     v->uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*v->uhs_qd_2;
     v->uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*v->uhs_qd_2;
@@ -1848,8 +1856,8 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
     v->uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
     /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-    const real uhs_zeta_2_in_axes3_x = v->uhs_W_2_in_axes2_xz*v->uhs_h_3_t_12;
-    const real uhs_zeta_2_in_axes3_y = v->uhs_W_2_in_axes2_xz*v->uhs_e_2_in_axes3_x;
+    const real uhs_zeta_2_in_axes3_x = v->uhs_W_2_in_axes2_xz*v->uhs_s_3;
+    const real uhs_zeta_2_in_axes3_y = v->uhs_W_2_in_axes2_xz*v->uhs_c_3;
     /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
     v->uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*v->uhs_qd_3;
     v->uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*v->uhs_qd_3;
@@ -1860,14 +1868,14 @@ INLINE void stage_uhs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     const real uhs_bias_t_2 = m->uhs_bias_t[i]*v->uhs_qd_3;
     v->uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
         m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x +
-        uhs_zeta_2_in_axes3_y) + v->uhs_h_3_t_10*(v->uhs_W_3_in_axes3_xz +
+        uhs_zeta_2_in_axes3_y) + v->uhs_x_3_in_axes2_x*(v->uhs_W_3_in_axes3_xz +
         uhs_beta_3_in_axes3_y);
     v->uhs_bias_in_axes3_y =
         m->uhs_joint3_offset_x[i]*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
         uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x +
-        v->uhs_h_3_t_10*(v->uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
-    v->uhs_bias_in_axes3_z = -uhs_W_2_t_3*v->uhs_h_3_t_10 -
-        uhs_W_2_t_3*m->uhs_joint3_offset_x[i];
+        v->uhs_x_3_in_axes2_x*(v->uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x);
+    v->uhs_bias_in_axes3_z = -uhs_W_2_t_3*m->uhs_joint3_offset_x[i] -
+        uhs_W_2_t_3*v->uhs_x_3_in_axes2_x;
     /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
     v->uhs_mu_3_t_2 = m->uhs_J_3_in_spec3_xz[i]*(uhs_W_2_t_2 - uhs_mu_3_t);
@@ -1921,20 +1929,18 @@ INLINE void stage_uhs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         uhs_S_ddot_t_4*v->uhs_c_2;
     const real uhs_S_ddot_t_6 = uhs_S_ddot_t_4*v->uhs_e_1_in_axes3_z -
         uhs_S_ddot_t_3*v->uhs_c_2;
-    v->uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*v->uhs_e_2_in_axes3_x -
-        uhs_S_ddot_t_6*v->uhs_h_3_t_12;
-    v->uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*v->uhs_h_3_t_12 -
-        uhs_S_ddot_t_6*v->uhs_e_2_in_axes3_x;
+    v->uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*v->uhs_c_3 - uhs_S_ddot_t_6*v->uhs_s_3;
+    v->uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*v->uhs_s_3 - uhs_S_ddot_t_6*v->uhs_c_3;
     /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
     const real uhs_rel_in_axes3_x = v->uhs_S_ddot_in_axes3_x - v->uhs_bias_in_axes3_x;
     const real uhs_rel_in_axes3_y = v->uhs_S_ddot_in_axes3_y - v->uhs_bias_in_axes3_y;
     const real uhs_rel_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_bias_in_axes3_z;
     /* (uhs-qdd_1) acceleration of joint 1 */
-    v->uhs_qdd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
-        v->uhs_h_3_t_12*uhs_rel_in_axes3_y);
+    v->uhs_qdd_1 = v->inv_uhs_v_1_in_axes2_z*(v->uhs_c_3*uhs_rel_in_axes3_x -
+        uhs_rel_in_axes3_y*v->uhs_s_3);
     /* (uhs-qdd_2) acceleration of joint 2 */
-    v->uhs_qdd_2 = v->inv_uhs_h_3_t_9*(v->uhs_qdd_1*v->uhs_v_1_t_2 -
-        v->uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_in_axes3_x);
+    v->uhs_qdd_2 = v->inv_uhs_root_2*(v->uhs_qdd_1*v->uhs_v_1_t_2 -
+        v->uhs_c_3*uhs_rel_in_axes3_y - uhs_rel_in_axes3_x*v->uhs_s_3);
     /* (uhs-qdd_3) acceleration of joint 3 */
     v->uhs_qdd_3 = m->inv_uhs_joint3_pitch[i]*uhs_rel_in_axes3_z;
 }
@@ -1961,12 +1967,11 @@ INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - v->uhs_bias_in_axes3_y;
     const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - v->uhs_bias_in_axes3_z;
     /* (uhs-qdd_1_o) remainder of: acceleration of joint 1 */
-    const real uhs_qdd_1_o =
-        v->inv_uhs_v_1_in_axes2_z*(v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
-        v->uhs_h_3_t_12*uhs_rel_o_in_axes3_y);
+    const real uhs_qdd_1_o = v->inv_uhs_v_1_in_axes2_z*(v->uhs_c_3*uhs_rel_o_in_axes3_x -
+        uhs_rel_o_in_axes3_y*v->uhs_s_3);
     /* (uhs-qdd_2_o) remainder of: acceleration of joint 2 */
-    const real uhs_qdd_2_o = v->inv_uhs_h_3_t_9*(uhs_qdd_1_o*v->uhs_v_1_t_2 -
-        v->uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y - v->uhs_h_3_t_12*uhs_rel_o_in_axes3_x);
+    const real uhs_qdd_2_o = v->inv_uhs_root_2*(uhs_qdd_1_o*v->uhs_v_1_t_2 -
+        v->uhs_c_3*uhs_rel_o_in_axes3_y - uhs_rel_o_in_axes3_x*v->uhs_s_3);
     /* (uhs-alpha_1_o) remainder of: angular acceleration of link 1 */
     const real uhs_alpha_1_o_in_axes2_x = v->uhs_e_1_in_axes3_z*uhs_qdd_1_o;
     const real uhs_alpha_1_o_in_axes2_y = -v->uhs_c_2*uhs_qdd_1_o;
@@ -1979,10 +1984,10 @@ INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real uhs_B_2_o_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
     const real uhs_B_2_o_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
     /* (uhs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real uhs_alpha_3_o_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
-        v->uhs_e_2_in_axes3_x*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*v->uhs_h_3_t_12;
+    const real uhs_alpha_3_o_in_axes3_x = v->uhs_zeta_3_in_axes3_x + v->uhs_c_3*uhs_qdd_2_o -
+        uhs_alpha_2_o_in_axes2_y*v->uhs_s_3;
     const real uhs_alpha_3_o_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_o_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*uhs_qdd_2_o;
+        uhs_alpha_2_o_in_axes2_y*v->uhs_c_3 - uhs_qdd_2_o*v->uhs_s_3;
     const real uhs_alpha_3_o_in_axes3_z = m->inv_uhs_joint3_pitch[i]*uhs_rel_o_in_axes3_z +
         uhs_alpha_2_o_in_axes2_x;
     /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
@@ -2040,24 +2045,24 @@ INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
-    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y -
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x;
-    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y;
+    const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y - v->uhs_c_3*uhs_mu_3_o_in_axes3_y
+        - uhs_mu_3_o_in_axes3_x*v->uhs_s_3;
+    const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z + v->uhs_c_3*uhs_mu_3_o_in_axes3_x
+        - uhs_mu_3_o_in_axes3_y*v->uhs_s_3;
     /* (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
-    const real uhs_c_o_t = v->inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
+    const real uhs_c_o_t = v->inv_uhs_root_2*uhs_N_2_o_in_axes2_z;
     const real uhs_c_o_t_2 =
         v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*v->uhs_e_1_in_axes3_z -
         uhs_N_2_o_in_axes2_y*v->uhs_c_2 + uhs_c_o_t*v->uhs_v_1_t_2);
     const real uhs_c_o_in_axes3_x = v->uhs_c_t -
         uhs_B_3_o_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_h_3_t_12 -
-        uhs_c_o_t_2*v->uhs_e_2_in_axes3_x;
+        uhs_B_3_o_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_s_3 -
+        v->uhs_c_3*uhs_c_o_t_2;
     const real uhs_c_o_in_axes3_y = v->uhs_c_t_2 -
         uhs_B_3_o_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_o_t*v->uhs_e_2_in_axes3_x +
-        uhs_c_o_t_2*v->uhs_h_3_t_12;
+        uhs_B_3_o_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v->uhs_c_3*uhs_c_o_t +
+        uhs_c_o_t_2*v->uhs_s_3;
     const real uhs_c_o_in_axes3_z = v->uhs_c_t_3 -
         uhs_B_3_o_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
         uhs_B_3_o_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
@@ -2078,17 +2083,15 @@ INLINE void stage_uhs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
 INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
 {
     /* (uhs-J_3) inertia tensor of link 3 about the connection point */
-    const real uhs_J_3_in_axes2_xz = m->uhs_J_3_in_spec3_xy[i]*v->uhs_e_2_in_axes3_x -
-        m->uhs_J_3_in_spec3_xz[i]*v->uhs_h_3_t_12;
+    const real uhs_J_3_in_axes2_xz = m->uhs_J_3_in_spec3_xy[i]*v->uhs_c_3 -
+        m->uhs_J_3_in_spec3_xz[i]*v->uhs_s_3;
     /* (uhs-w_1) reciprocal vector 1 */
-    const real uhs_w_1_in_axes3_x = v->inv_uhs_v_1_in_axes2_z*v->uhs_e_2_in_axes3_x;
-    const real uhs_w_1_in_axes3_y = -v->inv_uhs_v_1_in_axes2_z*v->uhs_h_3_t_12;
+    const real uhs_w_1_in_axes3_x = v->inv_uhs_v_1_in_axes2_z*v->uhs_c_3;
+    const real uhs_w_1_in_axes3_y = -v->inv_uhs_v_1_in_axes2_z*v->uhs_s_3;
     /* (uhs-w_2) reciprocal vector 2 */
-    const real uhs_w_2_t = v->inv_uhs_h_3_t_9*v->inv_uhs_v_1_in_axes2_z*v->uhs_v_1_t_2;
-    const real uhs_w_2_in_axes3_x = v->uhs_e_2_in_axes3_x*uhs_w_2_t -
-        v->inv_uhs_h_3_t_9*v->uhs_h_3_t_12;
-    const real uhs_w_2_in_axes3_y = -v->inv_uhs_h_3_t_9*v->uhs_e_2_in_axes3_x -
-        v->uhs_h_3_t_12*uhs_w_2_t;
+    const real uhs_w_2_t = v->inv_uhs_root_2*v->inv_uhs_v_1_in_axes2_z*v->uhs_v_1_t_2;
+    const real uhs_w_2_in_axes3_x = v->uhs_c_3*uhs_w_2_t - v->inv_uhs_root_2*v->uhs_s_3;
+    const real uhs_w_2_in_axes3_y = -v->inv_uhs_root_2*v->uhs_c_3 - v->uhs_s_3*uhs_w_2_t;
     /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
     const real uhs_d_alpha_3_in_axes3_zy = v->uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y;
     /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
@@ -2097,43 +2100,42 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
         m->uhs_J_3_in_spec3_xz[i]*v->uhs_e_1_in_axes3_y;
     /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*v->uhs_h_3_t_12;
-    const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*v->uhs_e_2_in_axes3_x;
-    const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*v->uhs_h_3_t_12 + uhs_Jc_2_t_2;
-    const real uhs_Jc_2_t_4 = m->uhs_J_3_in_spec3_zz[i]*v->uhs_e_2_in_axes3_x + uhs_Jc_2_t;
+    const real uhs_Jc_2_t = m->uhs_J_3_in_spec3_yz[i]*v->uhs_s_3;
+    const real uhs_Jc_2_t_2 = m->uhs_J_3_in_spec3_yz[i]*v->uhs_c_3;
+    const real uhs_Jc_2_t_3 = m->uhs_J_3_in_spec3_yy[i]*v->uhs_s_3 + uhs_Jc_2_t_2;
+    const real uhs_Jc_2_t_4 = m->uhs_J_3_in_spec3_zz[i]*v->uhs_c_3 + uhs_Jc_2_t;
     const real uhs_Jc_2_in_axes2_xy = -m->uhs_J_2_in_spec2_xz[i] -
-        m->uhs_J_3_in_spec3_xy[i]*v->uhs_h_3_t_12 -
-        m->uhs_J_3_in_spec3_xz[i]*v->uhs_e_2_in_axes3_x;
-    const real uhs_Jc_2_t_5 = v->uhs_c_2*(uhs_Jc_2_t_4*v->uhs_h_3_t_12 -
-        m->uhs_J_2_in_spec2_yz[i] - uhs_Jc_2_t_3*v->uhs_e_2_in_axes3_x) -
-        v->uhs_e_1_in_axes3_z*(m->uhs_J_2_in_spec2_xy[i] + uhs_J_3_in_axes2_xz);
+        m->uhs_J_3_in_spec3_xy[i]*v->uhs_s_3 - m->uhs_J_3_in_spec3_xz[i]*v->uhs_c_3;
+    const real uhs_Jc_2_t_5 = v->uhs_c_2*(uhs_Jc_2_t_4*v->uhs_s_3 - m->uhs_J_2_in_spec2_yz[i]
+        - uhs_Jc_2_t_3*v->uhs_c_3) - v->uhs_e_1_in_axes3_z*(m->uhs_J_2_in_spec2_xy[i] +
+        uhs_J_3_in_axes2_xz);
     /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
        inertia and weight */
-    const real uhs_d_Gamma_2_t = v->inv_uhs_h_3_t_9*(m->uhs_J_2_in_spec2_yy[i] +
-        v->uhs_e_2_in_axes3_x*(m->uhs_J_3_in_spec3_yy[i]*v->uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
-        v->uhs_h_3_t_12*(uhs_Jc_2_t_2 - m->uhs_J_3_in_spec3_zz[i]*v->uhs_h_3_t_12));
+    const real uhs_d_Gamma_2_t = v->inv_uhs_root_2*(m->uhs_J_2_in_spec2_yy[i] +
+        v->uhs_c_3*(m->uhs_J_3_in_spec3_yy[i]*v->uhs_c_3 - uhs_Jc_2_t) -
+        v->uhs_s_3*(uhs_Jc_2_t_2 - m->uhs_J_3_in_spec3_zz[i]*v->uhs_s_3));
     const real uhs_d_Gamma_2_t_2 = v->inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 -
         uhs_d_Gamma_2_t*v->uhs_v_1_t_2);
     const real uhs_d_Gamma_2_in_axes2_x = v->uhs_h_3_in_spec2_z +
         m->inv_uhs_joint3_pitch[i]*uhs_J_3_in_axes2_xz;
     const real uhs_d_Gamma_2_in_axes2_y = m->uhs_h_3_in_spec3_x[i] + uhs_d_Gamma_2_t;
-    const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*v->uhs_h_3_t_12 -
-        uhs_d_Gamma_2_in_axes2_y*v->uhs_e_2_in_axes3_x;
+    const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*v->uhs_s_3 -
+        v->uhs_c_3*uhs_d_Gamma_2_in_axes2_y;
     /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
-    const real uhs_d_Gamma_1_t = v->inv_uhs_h_3_t_9*uhs_Jc_2_t_5;
+    const real uhs_d_Gamma_1_t = v->inv_uhs_root_2*uhs_Jc_2_t_5;
     const real uhs_d_Gamma_1_t_2 = v->uhs_c_2*(v->uhs_c_2*(m->uhs_J_2_in_spec2_zz[i] +
-        uhs_Jc_2_t_3*v->uhs_h_3_t_12 + uhs_Jc_2_t_4*v->uhs_e_2_in_axes3_x) -
+        uhs_Jc_2_t_3*v->uhs_s_3 + uhs_Jc_2_t_4*v->uhs_c_3) -
         uhs_Jc_2_in_axes2_xy*v->uhs_e_1_in_axes3_z) -
         v->uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*v->uhs_c_2 -
         m->uhs_Jc_2_in_axes2_xx[i]*v->uhs_e_1_in_axes3_z) - uhs_d_Gamma_1_t*v->uhs_v_1_t_2;
     const real uhs_d_Gamma_1_t_3 = v->inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2;
     const real uhs_d_Gamma_1_in_axes3_x = v->uhs_e_1_in_axes3_y*m->uhs_h_3_in_spec3_x[i] -
-        v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i] + uhs_d_Gamma_1_t*v->uhs_h_3_t_12 +
-        uhs_d_Gamma_1_t_3*v->uhs_e_2_in_axes3_x;
+        v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i] + uhs_d_Gamma_1_t*v->uhs_s_3 +
+        v->uhs_c_3*uhs_d_Gamma_1_t_3;
     const real uhs_d_Gamma_1_in_axes3_y = v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_y[i] -
-        v->uhs_e_1_in_axes3_x*m->uhs_h_3_in_spec3_x[i] + uhs_d_Gamma_1_t*v->uhs_e_2_in_axes3_x
-        - uhs_d_Gamma_1_t_3*v->uhs_h_3_t_12;
+        v->uhs_e_1_in_axes3_x*m->uhs_h_3_in_spec3_x[i] + v->uhs_c_3*uhs_d_Gamma_1_t -
+        uhs_d_Gamma_1_t_3*v->uhs_s_3;
     const real uhs_d_Gamma_1_in_axes3_z = v->uhs_e_1_in_axes3_x*m->uhs_h_3_in_spec3_z[i] -
         v->uhs_e_1_in_axes3_y*m->uhs_h_3_in_spec3_y[i] + m->inv_uhs_joint3_pitch[i]*uhs_D_1_3;
     /* (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
@@ -2141,22 +2143,21 @@ INLINE void stage_uhs_M_dynamics(const prepared *m, size_t i, values_uhs *v)
     const real uhs_d_c_in_axes3_xx =
         v->uhs_e_1_in_axes3_z*m->uhs_h_3_in_spec3_z[i]*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
-        uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*v->uhs_h_3_t_12 -
-        uhs_d_Gamma_2_t_2*v->uhs_e_2_in_axes3_x) -
+        uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*v->uhs_s_3 -
+        v->uhs_c_3*uhs_d_Gamma_2_t_2) -
         m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
-        v->uhs_h_3_t_12*uhs_w_2_in_axes3_x);
+        v->uhs_s_3*uhs_w_2_in_axes3_x);
     const real uhs_d_c_in_axes3_xy = uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
         uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
         m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
-        v->uhs_h_3_t_12*uhs_w_2_in_axes3_y);
+        v->uhs_s_3*uhs_w_2_in_axes3_y);
     const real uhs_d_c_in_axes3_xz = m->uhs_d_phi_3_t[i] -
         uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
         uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x;
     const real uhs_d_c_in_axes3_yy =
         m->uhs_h_3_in_spec3_x[i]*(v->uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-        v->uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) -
-        uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+        v->uhs_c_3*uhs_w_2_in_axes3_y) - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
         uhs_d_alpha_3_in_axes3_zy*m->uhs_h_3_in_spec3_y[i] -
         uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y;
     const real uhs_d_c_in_axes3_yz = -m->uhs_d_phi_3_in_axes3_yz[i] -
@@ -2224,10 +2225,10 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     const real uhs_B_2_in_axes2_zx = v->uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y;
     const real uhs_B_2_in_axes2_zy = v->uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x;
     /* (uhs-alpha_3) angular acceleration of link 3 */
-    const real uhs_alpha_3_in_axes3_x = v->uhs_zeta_3_in_axes3_x +
-        v->uhs_e_2_in_axes3_x*v->uhs_qdd_2 - uhs_alpha_2_in_axes2_y*v->uhs_h_3_t_12;
+    const real uhs_alpha_3_in_axes3_x = v->uhs_zeta_3_in_axes3_x + v->uhs_c_3*v->uhs_qdd_2 -
+        uhs_alpha_2_in_axes2_y*v->uhs_s_3;
     const real uhs_alpha_3_in_axes3_y = v->uhs_zeta_3_in_axes3_y -
-        uhs_alpha_2_in_axes2_y*v->uhs_e_2_in_axes3_x - v->uhs_h_3_t_12*v->uhs_qdd_2;
+        uhs_alpha_2_in_axes2_y*v->uhs_c_3 - v->uhs_qdd_2*v->uhs_s_3;
     const real uhs_alpha_3_in_axes3_z = v->uhs_qdd_3 + uhs_alpha_2_in_axes2_x;
     /* (uhs-B_3) acceleration tensor of link 3 */
     const real uhs_B_3_in_axes3_xy = v->uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z;
@@ -2237,10 +2238,10 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     const real uhs_B_3_in_axes3_zx = v->uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
     const real uhs_B_3_in_axes3_zy = v->uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
     /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->uhs_acc_3_in_axes3_x = v->uhs_g_in_axes2_y*v->uhs_h_3_t_12 -
-        v->uhs_e_2_in_axes3_x*v->uhs_g_in_axes2_z + v->uhs_S_ddot_in_axes3_x;
-    v->uhs_acc_3_in_axes3_y = v->uhs_e_2_in_axes3_x*v->uhs_g_in_axes2_y +
-        v->uhs_g_in_axes2_z*v->uhs_h_3_t_12 + v->uhs_S_ddot_in_axes3_y;
+    v->uhs_acc_3_in_axes3_x = v->uhs_g_in_axes2_y*v->uhs_s_3 - v->uhs_c_3*v->uhs_g_in_axes2_z
+        + v->uhs_S_ddot_in_axes3_x;
+    v->uhs_acc_3_in_axes3_y = v->uhs_c_3*v->uhs_g_in_axes2_y + v->uhs_g_in_axes2_z*v->uhs_s_3
+        + v->uhs_S_ddot_in_axes3_y;
     v->uhs_acc_3_in_axes3_z = v->uhs_S_ddot_in_axes3_z - v->uhs_g_in_axes2_x;
     /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real uhs_mu_3_in_axes3_x = v->uhs_acc_3_in_axes3_z*m->uhs_h_3_in_spec3_z[i] -
@@ -2278,21 +2279,21 @@ INLINE void stage_uhs_legs_required(const prepared *m, size_t i, values_uhs *v)
     /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
        left out */
     const real uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z;
-    const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y -
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y - v->uhs_h_3_t_12*uhs_mu_3_in_axes3_x;
-    const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z +
-        v->uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x - v->uhs_h_3_t_12*uhs_mu_3_in_axes3_y;
+    const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y - v->uhs_c_3*uhs_mu_3_in_axes3_y -
+        uhs_mu_3_in_axes3_x*v->uhs_s_3;
+    const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z + v->uhs_c_3*uhs_mu_3_in_axes3_x -
+        uhs_mu_3_in_axes3_y*v->uhs_s_3;
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real uhs_c_t_4 = v->inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z;
+    const real uhs_c_t_4 = v->inv_uhs_root_2*uhs_N_2_in_axes2_z;
     const real uhs_c_t_5 = v->inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*v->uhs_e_1_in_axes3_z
         - uhs_N_2_in_axes2_y*v->uhs_c_2 + uhs_c_t_4*v->uhs_v_1_t_2);
     v->uhs_c_in_axes3_x = v->uhs_c_t - uhs_B_3_in_axes3_xy*m->uhs_h_3_in_spec3_z[i] -
-        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t_4*v->uhs_h_3_t_12 -
-        uhs_c_t_5*v->uhs_e_2_in_axes3_x;
+        uhs_B_3_in_axes3_xz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t_4*v->uhs_s_3 -
+        v->uhs_c_3*uhs_c_t_5;
     v->uhs_c_in_axes3_y = v->uhs_c_t_2 - uhs_B_3_in_axes3_yx*m->uhs_h_3_in_spec3_y[i] -
-        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + uhs_c_t_4*v->uhs_e_2_in_axes3_x +
-        uhs_c_t_5*v->uhs_h_3_t_12;
+        uhs_B_3_in_axes3_yz*m->uhs_h_3_in_spec3_x[i] + v->uhs_c_3*uhs_c_t_4 +
+        uhs_c_t_5*v->uhs_s_3;
     v->uhs_c_in_axes3_z = v->uhs_c_t_3 - uhs_B_3_in_axes3_zx*m->uhs_h_3_in_spec3_y[i] -
         uhs_B_3_in_axes3_zy*m->uhs_h_3_in_spec3_z[i] -
         m->inv_uhs_joint3_pitch[i]*uhs_mu_3_in_axes3_z;
@@ -2389,9 +2390,9 @@ INLINE void any_entries_uhs(size_t k, size_t count, const values_uhs *v, real *o
 
 INLINE void any_singular_uhs(const prepared *m, size_t i, size_t k, const values_uhs *v, real *o)
 {
-    o[k] = UNLESS(magnitude(v->uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v->uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v->uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]) +
+    o[k] = UNLESS(magnitude(v->uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v->uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v->uhs_root_2) > TOLERANCE*m->uhs_size[i]) +
         UNLESS(magnitude(v->uhs_v_1_in_axes2_z) > TOLERANCE*m->uhs_size[i]);
 }
 
@@ -2920,9 +2921,9 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_uhs v;
     stage_uhs_X(m, w, i, j, s, X, &v);
     any_entries_uhs(k, count, &v, o);
-    o[6*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_9) > TOLERANCE*m->uhs_size[i]);
+    o[6*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_root_2) > TOLERANCE*m->uhs_size[i]);
     o[7*count + k] = (v.uhs_w_3_x + (v.uhs_w_3_y + v.uhs_w_3_z)) + (v.uhs_H_a_3_x +
         (v.uhs_H_a_3_y + v.uhs_H_a_3_z));
 }
@@ -3043,10 +3044,8 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, s
     stage_uhs_legs_required(m, i, &v);
     /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
        point */
-    const real uhs_c_t_6 = v.uhs_c_in_axes3_x*v.uhs_e_2_in_axes3_x -
-        v.uhs_c_in_axes3_y*v.uhs_h_3_t_12;
-    const real uhs_c_t_7 = v.uhs_c_in_axes3_x*v.uhs_h_3_t_12 +
-        v.uhs_c_in_axes3_y*v.uhs_e_2_in_axes3_x;
+    const real uhs_c_t_6 = v.uhs_c_3*v.uhs_c_in_axes3_x - v.uhs_c_in_axes3_y*v.uhs_s_3;
+    const real uhs_c_t_7 = v.uhs_c_3*v.uhs_c_in_axes3_y + v.uhs_c_in_axes3_x*v.uhs_s_3;
     const real uhs_c_t_8 = v.uhs_c_2*v.uhs_c_in_axes3_z - uhs_c_t_7*v.uhs_e_1_in_axes3_z;
     const real uhs_c_t_9 = -v.uhs_c_in_axes3_z*v.uhs_e_1_in_axes3_z - v.uhs_c_2*uhs_c_t_7;
     const real uhs_c_t_10 = v.uhs_c_1*uhs_c_t_8 - uhs_c_t_6*v.uhs_s_1;
@@ -3187,10 +3186,10 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t i, s
     /* (uhs-q_2) */
     o[1*count + k] = uhs_q_2;
     /* (uhs-q_3) displacement of joint 3 */
-    o[2*count + k] = -v.uhs_h_3_t_11;
-    o[3*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
-    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_h_3_t_11);
+    o[2*count + k] = -v.uhs_q_3_t;
+    o[3*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
+    o[4*count + k] = uhs_q_1 + (uhs_q_2 + v.uhs_q_3_t);
 }
 
 INLINE void inverse_kinematics_place_uhs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3393,10 +3392,10 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, size_
         v.uhs_acc_3_in_axes3_y*m->uhs_link3_mass[i];
     const real uhs_c_true_in_axes3_z = v.uhs_c_in_axes3_z -
         v.uhs_acc_3_in_axes3_z*m->uhs_link3_mass[i];
-    const real uhs_c_true_t = uhs_c_true_in_axes3_x*v.uhs_e_2_in_axes3_x -
-        uhs_c_true_in_axes3_y*v.uhs_h_3_t_12;
-    const real uhs_c_true_t_2 = uhs_c_true_in_axes3_x*v.uhs_h_3_t_12 +
-        uhs_c_true_in_axes3_y*v.uhs_e_2_in_axes3_x;
+    const real uhs_c_true_t = v.uhs_c_3*uhs_c_true_in_axes3_x -
+        uhs_c_true_in_axes3_y*v.uhs_s_3;
+    const real uhs_c_true_t_2 = v.uhs_c_3*uhs_c_true_in_axes3_y +
+        uhs_c_true_in_axes3_x*v.uhs_s_3;
     const real uhs_c_true_t_3 = v.uhs_c_2*uhs_c_true_in_axes3_z -
         uhs_c_true_t_2*v.uhs_e_1_in_axes3_z;
     const real uhs_c_true_t_4 = -uhs_c_true_in_axes3_z*v.uhs_e_1_in_axes3_z -
@@ -3482,12 +3481,12 @@ INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
         v.uhs_e_1_in_axes3_z*m->uhs_potential_t_3[i])) -
         v.uhs_g_in_axes2_z*(m->uhs_h_2_in_spec2_y[i] +
         m->uhs_link2_mass[i]*(v.uhs_c_1*m->uhs_potential_t_2[i] -
-        m->uhs_potential_t[i]*v.uhs_s_1) + v.uhs_e_2_in_axes3_x*m->uhs_h_3_in_spec3_y[i] -
-        m->uhs_h_3_in_spec3_z[i]*v.uhs_h_3_t_12);
+        m->uhs_potential_t[i]*v.uhs_s_1) + v.uhs_c_3*m->uhs_h_3_in_spec3_y[i] -
+        m->uhs_h_3_in_spec3_z[i]*v.uhs_s_3);
     /* (potential) */
     gather(&terms[0*count + k], add, uhs_potential_t_5);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(magnitude(v.uhs_h_3_t_7) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
-        UNLESS(magnitude(v.uhs_h_3_t_8) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
+    o[0*count + k] = UNLESS(magnitude(v.uhs_rho2_1) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]) +
+        UNLESS(magnitude(v.uhs_rho2_2) > TOLERANCE*TOLERANCE*m->uhs_size_t[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3553,9 +3552,9 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_uhs_X(m, w, i, j, s, X, &v);
     /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real uhs_pivot_size = magnitude(v.uhs_h_3_t_7);
-    const real uhs_pivot_size_2 = magnitude(v.uhs_h_3_t_8);
-    const real uhs_pivot_size_3 = magnitude(v.uhs_h_3_t_9);
+    const real uhs_pivot_size = magnitude(v.uhs_rho2_1);
+    const real uhs_pivot_size_2 = magnitude(v.uhs_rho2_2);
+    const real uhs_pivot_size_3 = magnitude(v.uhs_root_2);
     const real uhs_pivot_size_4 = magnitude(v.uhs_v_1_in_axes2_z);
     const real uhs_least_pivots = lesser(lesser(lesser(m->inv_uhs_size[i]*uhs_pivot_size_3,
         m->inv_uhs_size[i]*uhs_pivot_size_4), root(m->inv_uhs_size_t[i]*uhs_pivot_size)),

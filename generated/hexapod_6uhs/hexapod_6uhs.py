@@ -611,7 +611,6 @@ def _prepare(p):
     # (uhs-rho_tip_3) connection point to the centre of mass of link 3
     uhs_rho_tip_3_in_spec3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x
     # (uhs-h_3) first moment of link 3 about the connection point
-    inv_uhs_joint3_pitch = 1.0/uhs_joint3_pitch
     uhs_h_3_in_spec3_x = uhs_link3_mass*uhs_rho_tip_3_in_spec3_x
     uhs_h_3_in_spec3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
     uhs_h_3_in_spec3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
@@ -632,6 +631,8 @@ def _prepare(p):
     uhs_link3_inertia_yz - uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass
     )
     uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4)
+    # (uhs-q_3) displacement of joint 3
+    inv_uhs_joint3_pitch = 1.0/uhs_joint3_pitch
     # (uhs-bias) acceleration of the connection point at zero joint accelerations
     uhs_bias_t = 2.0*uhs_joint3_pitch
     # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
@@ -2037,7 +2038,7 @@ def _run_dynamics(m, X, V):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -2047,47 +2048,48 @@ def _run_dynamics(m, X, V):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
-        uhs_h_3_in_spec2_z = (
-        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
-        )
-        # (uhs-J_3) inertia tensor of link 3 about the connection point
-        uhs_J_3_in_axes2_xz = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x - uhs_J_3_in_spec3_xz*uhs_h_3_t_12
-        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_h_3_in_spec2_z = uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3
+        # (uhs-J_3) inertia tensor of link 3 about the connection point
+        uhs_J_3_in_axes2_xz = uhs_J_3_in_spec3_xy*uhs_c_3 - uhs_J_3_in_spec3_xz*uhs_s_3
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -2096,25 +2098,25 @@ def _run_dynamics(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
-        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
-        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_h_3_t_12
+        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_c_3
+        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_s_3
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
-        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
-        uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t - inv_uhs_h_3_t_9*uhs_h_3_t_12
-        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_w_2_t
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
+        uhs_w_2_in_axes3_x = uhs_c_3*uhs_w_2_t - inv_uhs_root_2*uhs_s_3
+        uhs_w_2_in_axes3_y = -inv_uhs_root_2*uhs_c_3 - uhs_s_3*uhs_w_2_t
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
@@ -2135,7 +2137,7 @@ def _run_dynamics(m, X, V):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -2144,10 +2146,8 @@ def _run_dynamics(m, X, V):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
-        uhs_omega_2_in_axes3_y = (
-        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
-        )
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -2162,9 +2162,9 @@ def _run_dynamics(m, X, V):
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_u_1_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_s_3 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -2199,8 +2199,8 @@ def _run_dynamics(m, X, V):
         axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -2210,29 +2210,28 @@ def _run_dynamics(m, X, V):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
-            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1_o) remainder of: acceleration of joint 1
         uhs_qdd_1_o = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
-            uhs_h_3_t_12*uhs_rel_o_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_x - uhs_rel_o_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2_o) remainder of: acceleration of joint 2
         uhs_qdd_2_o = (
-        inv_uhs_h_3_t_9*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y -
-            uhs_h_3_t_12*uhs_rel_o_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_c_3*uhs_rel_o_in_axes3_y -
+            uhs_rel_o_in_axes3_x*uhs_s_3)
         )
         # (uhs-alpha_1_o) remainder of: angular acceleration of link 1
         uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
@@ -2249,12 +2248,10 @@ def _run_dynamics(m, X, V):
         uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y
         # (uhs-alpha_3_o) remainder of: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2_o -
-            uhs_alpha_2_o_in_axes2_y*uhs_h_3_t_12
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x -
-            uhs_h_3_t_12*uhs_qdd_2_o
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_c_3 - uhs_qdd_2_o*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_z = (
         uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
@@ -2290,18 +2287,16 @@ def _run_dynamics(m, X, V):
             uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
         )
         # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_h_3_t_12
-        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
-        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_h_3_t_12
-        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_s_3
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_c_3
+        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_s_3
+        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_c_3
         uhs_Jc_2_in_axes2_xy = (
-        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
-            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
+        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_s_3 - uhs_J_3_in_spec3_xz*uhs_c_3
         )
         uhs_Jc_2_t_5 = (
-        uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
-            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x) - uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy +
-            uhs_J_3_in_axes2_xz)
+        uhs_c_2*(uhs_Jc_2_t_4*uhs_s_3 - uhs_J_2_in_spec2_yz - uhs_Jc_2_t_3*uhs_c_3) -
+            uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
         )
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
@@ -2362,41 +2357,36 @@ def _run_dynamics(m, X, V):
         # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
-        uhs_mu_2_o_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y -
-            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x
+        uhs_mu_2_o_in_axes2_y - uhs_c_3*uhs_mu_3_o_in_axes3_y - uhs_mu_3_o_in_axes3_x*uhs_s_3
         )
         uhs_N_2_o_in_axes2_z = (
-        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x -
-            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y
+        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
         )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
-        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
-            uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
-            uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
+        inv_uhs_root_2*(uhs_J_2_in_spec2_yy + uhs_c_3*(uhs_J_3_in_spec3_yy*uhs_c_3 - uhs_Jc_2_t) -
+            uhs_s_3*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_s_3))
         )
         uhs_d_Gamma_2_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
-        uhs_d_Gamma_2_in_axes3_y = (
-        uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
-        )
+        uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*uhs_s_3 - uhs_c_3*uhs_d_Gamma_2_in_axes2_y
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_t_5
+        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_Jc_2_t_5
         uhs_d_Gamma_1_t_2 = (
-        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
-            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
-            uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
+        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_s_3 + uhs_Jc_2_t_4*uhs_c_3) -
+            uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) - uhs_d_Gamma_1_t*uhs_v_1_t_2 -
+            uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
             uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
         uhs_d_Gamma_1_t_3 = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2
         uhs_d_Gamma_1_in_axes3_x = (
-        uhs_d_Gamma_1_t*uhs_h_3_t_12 + uhs_d_Gamma_1_t_3*uhs_e_2_in_axes3_x +
+        uhs_c_3*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_s_3 +
             uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_x - uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z
         )
         uhs_d_Gamma_1_in_axes3_y = (
-        uhs_d_Gamma_1_t*uhs_e_2_in_axes3_x + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
-            uhs_d_Gamma_1_t_3*uhs_h_3_t_12 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
+        uhs_c_3*uhs_d_Gamma_1_t + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
+            uhs_d_Gamma_1_t_3*uhs_s_3 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
         )
         uhs_d_Gamma_1_in_axes3_z = (
         inv_uhs_joint3_pitch*uhs_D_1_3 + uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_z -
@@ -2411,23 +2401,22 @@ def _run_dynamics(m, X, V):
         uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
-            uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
-            uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
-            uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
+            uhs_s_3*uhs_w_2_in_axes3_x) - uhs_w_2_in_axes3_x*(-uhs_c_3*uhs_d_Gamma_2_t_2 -
+            uhs_d_Gamma_2_in_axes2_y*uhs_s_3)
         )
         uhs_d_c_in_axes3_xy = (
         uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
             - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
-            uhs_h_3_t_12*uhs_w_2_in_axes3_y)
+            uhs_s_3*uhs_w_2_in_axes3_y)
         )
         uhs_d_c_in_axes3_xz = (
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
         )
         uhs_d_c_in_axes3_yy = (
-        uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+        uhs_h_3_in_spec3_x*(uhs_c_3*uhs_w_2_in_axes3_y + uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y) -
+            uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
             uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
             uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y
         )
@@ -2436,17 +2425,17 @@ def _run_dynamics(m, X, V):
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
         )
         # (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
+        uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_t + uhs_c_o_t*uhs_h_3_t_12 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
-            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_o_t_2*uhs_e_2_in_axes3_x
+        uhs_c_t + uhs_c_o_t*uhs_s_3 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_o_t_2
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_t_2 + uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 -
+        uhs_c_t_2 + uhs_c_3*uhs_c_o_t + uhs_c_o_t_2*uhs_s_3 -
             uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
@@ -2531,8 +2520,8 @@ def _run_dynamics(m, X, V):
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (M_tt) translational block of M
@@ -2737,7 +2726,7 @@ def _run_M(m, X):
             uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
             uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -2747,71 +2736,72 @@ def _run_M(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
-        uhs_h_3_in_spec2_z = (
-        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
-        )
-        # (uhs-J_3) inertia tensor of link 3 about the connection point
-        uhs_J_3_in_axes2_xz = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x - uhs_J_3_in_spec3_xz*uhs_h_3_t_12
-        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_h_3_in_spec2_z = uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3
+        # (uhs-J_3) inertia tensor of link 3 about the connection point
+        uhs_J_3_in_axes2_xz = uhs_J_3_in_spec3_xy*uhs_c_3 - uhs_J_3_in_spec3_xz*uhs_s_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
-        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
-        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_h_3_t_12
+        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_c_3
+        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_s_3
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
-        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
-        uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t - inv_uhs_h_3_t_9*uhs_h_3_t_12
-        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_w_2_t
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
+        uhs_w_2_in_axes3_x = uhs_c_3*uhs_w_2_t - inv_uhs_root_2*uhs_s_3
+        uhs_w_2_in_axes3_y = -inv_uhs_root_2*uhs_c_3 - uhs_s_3*uhs_w_2_t
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_u_1_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_s_3 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -2841,47 +2831,42 @@ def _run_M(m, X):
             uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
         )
         # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_h_3_t_12
-        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
-        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_h_3_t_12
-        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_s_3
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_c_3
+        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_s_3
+        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_c_3
         uhs_Jc_2_in_axes2_xy = (
-        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
-            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
+        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_s_3 - uhs_J_3_in_spec3_xz*uhs_c_3
         )
         uhs_Jc_2_t_5 = (
-        uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
-            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x) - uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy +
-            uhs_J_3_in_axes2_xz)
+        uhs_c_2*(uhs_Jc_2_t_4*uhs_s_3 - uhs_J_2_in_spec2_yz - uhs_Jc_2_t_3*uhs_c_3) -
+            uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
         )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
-        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
-            uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
-            uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
+        inv_uhs_root_2*(uhs_J_2_in_spec2_yy + uhs_c_3*(uhs_J_3_in_spec3_yy*uhs_c_3 - uhs_Jc_2_t) -
+            uhs_s_3*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_s_3))
         )
         uhs_d_Gamma_2_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_t_5 - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
-        uhs_d_Gamma_2_in_axes3_y = (
-        uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
-        )
+        uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_t_2*uhs_s_3 - uhs_c_3*uhs_d_Gamma_2_in_axes2_y
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_t_5
+        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_Jc_2_t_5
         uhs_d_Gamma_1_t_2 = (
-        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
-            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) -
-            uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
+        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_s_3 + uhs_Jc_2_t_4*uhs_c_3) -
+            uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) - uhs_d_Gamma_1_t*uhs_v_1_t_2 -
+            uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
             uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
         uhs_d_Gamma_1_t_3 = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2
         uhs_d_Gamma_1_in_axes3_x = (
-        uhs_d_Gamma_1_t*uhs_h_3_t_12 + uhs_d_Gamma_1_t_3*uhs_e_2_in_axes3_x +
+        uhs_c_3*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_s_3 +
             uhs_e_1_in_axes3_y*uhs_h_3_in_spec3_x - uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z
         )
         uhs_d_Gamma_1_in_axes3_y = (
-        uhs_d_Gamma_1_t*uhs_e_2_in_axes3_x + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
-            uhs_d_Gamma_1_t_3*uhs_h_3_t_12 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
+        uhs_c_3*uhs_d_Gamma_1_t + uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_y -
+            uhs_d_Gamma_1_t_3*uhs_s_3 - uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_x
         )
         uhs_d_Gamma_1_in_axes3_z = (
         inv_uhs_joint3_pitch*uhs_D_1_3 + uhs_e_1_in_axes3_x*uhs_h_3_in_spec3_z -
@@ -2892,23 +2877,22 @@ def _run_M(m, X):
         uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_1_in_axes3_x*uhs_w_1_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
-            uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
-            uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
-            uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
+            uhs_s_3*uhs_w_2_in_axes3_x) - uhs_w_2_in_axes3_x*(-uhs_c_3*uhs_d_Gamma_2_t_2 -
+            uhs_d_Gamma_2_in_axes2_y*uhs_s_3)
         )
         uhs_d_c_in_axes3_xy = (
         uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
             - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
             uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
-            uhs_h_3_t_12*uhs_w_2_in_axes3_y)
+            uhs_s_3*uhs_w_2_in_axes3_y)
         )
         uhs_d_c_in_axes3_xz = (
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
             uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
         )
         uhs_d_c_in_axes3_yy = (
-        uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y) - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
+        uhs_h_3_in_spec3_x*(uhs_c_3*uhs_w_2_in_axes3_y + uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y) -
+            uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y -
             uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y -
             uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y
         )
@@ -2973,8 +2957,8 @@ def _run_M(m, X):
         uhs_M_aa_t_5 = uhs_M_ta_t_2*uhs_q_z + uhs_M_ta_t_9*uhs_q_x
         uhs_M_aa_t_6 = uhs_M_ta_t_6*uhs_q_x - uhs_M_ta_t_2*uhs_q_y
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (M_tt) translational block of M
@@ -3171,7 +3155,7 @@ def _run_Z(m, X, V):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3181,40 +3165,44 @@ def _run_Z(m, X, V):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -3223,20 +3211,20 @@ def _run_Z(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -3254,7 +3242,7 @@ def _run_Z(m, X, V):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -3263,10 +3251,8 @@ def _run_Z(m, X, V):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
-        uhs_omega_2_in_axes3_y = (
-        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
-        )
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3281,9 +3267,9 @@ def _run_Z(m, X, V):
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
-        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
-        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_u_1_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_s_3 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -3318,8 +3304,8 @@ def _run_Z(m, X, V):
         axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -3329,29 +3315,28 @@ def _run_Z(m, X, V):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
-            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1_o) remainder of: acceleration of joint 1
         uhs_qdd_1_o = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
-            uhs_h_3_t_12*uhs_rel_o_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_x - uhs_rel_o_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2_o) remainder of: acceleration of joint 2
         uhs_qdd_2_o = (
-        inv_uhs_h_3_t_9*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y -
-            uhs_h_3_t_12*uhs_rel_o_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_c_3*uhs_rel_o_in_axes3_y -
+            uhs_rel_o_in_axes3_x*uhs_s_3)
         )
         # (uhs-alpha_1_o) remainder of: angular acceleration of link 1
         uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
@@ -3366,12 +3351,10 @@ def _run_Z(m, X, V):
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-alpha_3_o) remainder of: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2_o -
-            uhs_alpha_2_o_in_axes2_y*uhs_h_3_t_12
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x -
-            uhs_h_3_t_12*uhs_qdd_2_o
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_c_3 - uhs_qdd_2_o*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_z = (
         uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
@@ -3460,29 +3443,27 @@ def _run_Z(m, X, V):
         # (uhs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
-        uhs_mu_2_o_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y -
-            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x
+        uhs_mu_2_o_in_axes2_y - uhs_c_3*uhs_mu_3_o_in_axes3_y - uhs_mu_3_o_in_axes3_x*uhs_s_3
         )
         uhs_N_2_o_in_axes2_z = (
-        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x -
-            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y
+        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
         uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
         uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
         uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
         # (uhs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
+        uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_t + uhs_c_o_t*uhs_h_3_t_12 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
-            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_o_t_2*uhs_e_2_in_axes3_x
+        uhs_c_t + uhs_c_o_t*uhs_s_3 - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_o_t_2
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_t_2 + uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 -
+        uhs_c_t_2 + uhs_c_3*uhs_c_o_t + uhs_c_o_t_2*uhs_s_3 -
             uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
@@ -3507,8 +3488,8 @@ def _run_Z(m, X, V):
         uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x
         uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (Z_t) translational part of Z
@@ -3587,7 +3568,7 @@ def _run_H(m, X):
             uhs_base_point_z, uhs_branch_2, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3597,30 +3578,30 @@ def _run_H(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
@@ -3629,8 +3610,8 @@ def _run_H(m, X):
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size)
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size)
         )
         # (uhs-w_3) reciprocal vector 3
         out_H[_H_uhs[0][leg]] = uhs_w_3_x
@@ -3800,7 +3781,7 @@ def _run_required(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -3810,40 +3791,44 @@ def _run_required(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -3852,20 +3837,20 @@ def _run_required(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
@@ -3886,7 +3871,7 @@ def _run_required(m, X, V, A):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -3895,10 +3880,8 @@ def _run_required(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
-        uhs_omega_2_in_axes3_y = (
-        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
-        )
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3932,11 +3915,11 @@ def _run_required(m, X, V, A):
         uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
         uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
         uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
-        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
-        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_c_3 - uhs_S_ddot_t_6*uhs_s_3
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_s_3 - uhs_S_ddot_t_6*uhs_c_3
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -3946,29 +3929,28 @@ def _run_required(m, X, V, A):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
-            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
         uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
-            uhs_h_3_t_12*uhs_rel_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
-            uhs_h_3_t_12*uhs_rel_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-qdd_3) acceleration of joint 3
         uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
@@ -3985,10 +3967,10 @@ def _run_required(m, X, V, A):
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_h_3_t_12
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_qdd_2
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
         )
         uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + uhs_qdd_3
         # (uhs-B_3) acceleration tensor of link 3
@@ -4004,12 +3986,10 @@ def _run_required(m, X, V, A):
         uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
         uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
         uhs_acc_3_in_axes3_x = (
-        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_h_3_t_12 -
-            uhs_e_2_in_axes3_x*uhs_g_in_axes2_z
+        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_g_in_axes2_z
         )
         uhs_acc_3_in_axes3_y = (
-        uhs_S_ddot_in_axes3_y + uhs_e_2_in_axes3_x*uhs_g_in_axes2_y +
-            uhs_g_in_axes2_z*uhs_h_3_t_12
+        uhs_S_ddot_in_axes3_y + uhs_c_3*uhs_g_in_axes2_y + uhs_g_in_axes2_z*uhs_s_3
         )
         uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes2_x
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
@@ -4063,36 +4043,34 @@ def _run_required(m, X, V, A):
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y -
-            uhs_h_3_t_12*uhs_mu_3_in_axes3_x
+        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x -
-            uhs_h_3_t_12*uhs_mu_3_in_axes3_y
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
         uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
         uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
         uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
-        uhs_c_t_4 = inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z
+        uhs_c_t_4 = inv_uhs_root_2*uhs_N_2_in_axes2_z
         uhs_c_t_5 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t_4*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t + uhs_c_t_4*uhs_h_3_t_12 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
-            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_t_5*uhs_e_2_in_axes3_x
+        uhs_c_t + uhs_c_t_4*uhs_s_3 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_t_5
         )
         uhs_c_in_axes3_y = (
-        uhs_c_t_2 + uhs_c_t_4*uhs_e_2_in_axes3_x + uhs_c_t_5*uhs_h_3_t_12 -
-            uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
+        uhs_c_t_2 + uhs_c_3*uhs_c_t_4 + uhs_c_t_5*uhs_s_3 - uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y
+            - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
         uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
             uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
         )
-        uhs_c_t_6 = uhs_c_in_axes3_x*uhs_e_2_in_axes3_x - uhs_c_in_axes3_y*uhs_h_3_t_12
-        uhs_c_t_7 = uhs_c_in_axes3_x*uhs_h_3_t_12 + uhs_c_in_axes3_y*uhs_e_2_in_axes3_x
+        uhs_c_t_6 = uhs_c_3*uhs_c_in_axes3_x - uhs_c_in_axes3_y*uhs_s_3
+        uhs_c_t_7 = uhs_c_3*uhs_c_in_axes3_y + uhs_c_in_axes3_x*uhs_s_3
         uhs_c_t_8 = uhs_c_2*uhs_c_in_axes3_z - uhs_c_t_7*uhs_e_1_in_axes3_z
         uhs_c_t_9 = -uhs_c_2*uhs_c_t_7 - uhs_c_in_axes3_z*uhs_e_1_in_axes3_z
         uhs_c_t_10 = uhs_c_1*uhs_c_t_8 - uhs_c_t_6*uhs_s_1
@@ -4115,8 +4093,8 @@ def _run_required(m, X, V, A):
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (R_t) force that actuators and external wrench must give
@@ -4205,7 +4183,7 @@ def _run_inverse_kinematics(m, X):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4215,43 +4193,45 @@ def _run_inverse_kinematics(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-q_1) displacement of joint 1
         uhs_q_1 = atan2(uhs_s_1, uhs_c_1)
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_q_2 = atan2(-uhs_e_1_in_axes3_z, uhs_c_2)
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
             _TOLERANCE * _TOLERANCE * uhs_size_t)
         )
         # (uhs-q_1) displacement of joint 1
@@ -4259,7 +4239,7 @@ def _run_inverse_kinematics(m, X):
         # (uhs-q_2) displacement of joint 2
         out_q[_q_uhs[1][leg]] = uhs_q_2
         # (uhs-q_3) displacement of joint 3
-        out_q[_q_uhs[2][leg]] = -uhs_h_3_t_11
+        out_q[_q_uhs[2][leg]] = -uhs_q_3_t
     return ok, (out_q,)
 
 
@@ -4328,7 +4308,7 @@ def _run_joint_rates(m, X, V):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4338,40 +4318,44 @@ def _run_joint_rates(m, X, V):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4380,16 +4364,16 @@ def _run_joint_rates(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -4407,14 +4391,14 @@ def _run_joint_rates(m, X, V):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
         uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-qd_1) rate of joint 1
@@ -4521,7 +4505,7 @@ def _run_joint_accelerations(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4531,40 +4515,44 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4573,16 +4561,16 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -4600,7 +4588,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -4609,10 +4597,8 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
-        uhs_omega_2_in_axes3_y = (
-        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
-        )
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
         uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
@@ -4643,11 +4629,11 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
         uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
         uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
-        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
-        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_c_3 - uhs_S_ddot_t_6*uhs_s_3
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_s_3 - uhs_S_ddot_t_6*uhs_c_3
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -4657,35 +4643,34 @@ def _run_joint_accelerations(m, X, V, A):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
-            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
         uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
-            uhs_h_3_t_12*uhs_rel_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
-            uhs_h_3_t_12*uhs_rel_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-qdd_3) acceleration of joint 3
         uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-qdd_1) acceleration of joint 1
@@ -4799,7 +4784,7 @@ def _run_legs(m, X, V, A):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -4809,40 +4794,44 @@ def _run_legs(m, X, V, A):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4851,20 +4840,20 @@ def _run_legs(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
-        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
@@ -4885,7 +4874,7 @@ def _run_legs(m, X, V, A):
         )
         uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
             uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
@@ -4894,10 +4883,8 @@ def _run_legs(m, X, V, A):
         uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
         uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
-        uhs_omega_2_in_axes3_y = (
-        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
-        )
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -4931,11 +4918,11 @@ def _run_legs(m, X, V, A):
         uhs_S_ddot_t_5 = uhs_S_ddot_t_2*uhs_c_1 - uhs_S_ddot_t*uhs_s_1
         uhs_S_ddot_in_axes3_z = uhs_S_ddot_t_3*uhs_e_1_in_axes3_z + uhs_S_ddot_t_4*uhs_c_2
         uhs_S_ddot_t_6 = uhs_S_ddot_t_4*uhs_e_1_in_axes3_z - uhs_S_ddot_t_3*uhs_c_2
-        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_e_2_in_axes3_x - uhs_S_ddot_t_6*uhs_h_3_t_12
-        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_h_3_t_12 - uhs_S_ddot_t_6*uhs_e_2_in_axes3_x
+        uhs_S_ddot_in_axes3_x = uhs_S_ddot_t_5*uhs_c_3 - uhs_S_ddot_t_6*uhs_s_3
+        uhs_S_ddot_in_axes3_y = -uhs_S_ddot_t_5*uhs_s_3 - uhs_S_ddot_t_6*uhs_c_3
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
@@ -4945,29 +4932,28 @@ def _run_legs(m, X, V, A):
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
         uhs_bias_in_axes3_x = (
-        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
-            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
-            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
-            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
-        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
         uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
         uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_in_axes3_x -
-            uhs_h_3_t_12*uhs_rel_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
         uhs_qdd_2 = (
-        inv_uhs_h_3_t_9*(uhs_qdd_1*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_in_axes3_y -
-            uhs_h_3_t_12*uhs_rel_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-qdd_3) acceleration of joint 3
         uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
@@ -4984,10 +4970,10 @@ def _run_legs(m, X, V, A):
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_h_3_t_12
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_qdd_2
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
         )
         uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + uhs_qdd_3
         # (uhs-B_3) acceleration tensor of link 3
@@ -5003,12 +4989,10 @@ def _run_legs(m, X, V, A):
         uhs_g_in_axes2_x = uhs_acc_3_t_3*uhs_e_1_in_axes3_z + uhs_acc_3_t_4*uhs_c_2
         uhs_g_in_axes2_y = uhs_acc_3_t_4*uhs_e_1_in_axes3_z - uhs_acc_3_t_3*uhs_c_2
         uhs_acc_3_in_axes3_x = (
-        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_h_3_t_12 -
-            uhs_e_2_in_axes3_x*uhs_g_in_axes2_z
+        uhs_S_ddot_in_axes3_x + uhs_g_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_g_in_axes2_z
         )
         uhs_acc_3_in_axes3_y = (
-        uhs_S_ddot_in_axes3_y + uhs_e_2_in_axes3_x*uhs_g_in_axes2_y +
-            uhs_g_in_axes2_z*uhs_h_3_t_12
+        uhs_S_ddot_in_axes3_y + uhs_c_3*uhs_g_in_axes2_y + uhs_g_in_axes2_z*uhs_s_3
         )
         uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_g_in_axes2_x
         # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
@@ -5062,29 +5046,27 @@ def _run_legs(m, X, V, A):
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_y -
-            uhs_h_3_t_12*uhs_mu_3_in_axes3_x
+        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_in_axes3_x -
-            uhs_h_3_t_12*uhs_mu_3_in_axes3_y
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
         uhs_c_t = uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t)
         uhs_c_t_2 = uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t)
         uhs_c_t_3 = uhs_W_2_t_3*uhs_h_3_in_spec3_x
-        uhs_c_t_4 = inv_uhs_h_3_t_9*uhs_N_2_in_axes2_z
+        uhs_c_t_4 = inv_uhs_root_2*uhs_N_2_in_axes2_z
         uhs_c_t_5 = (
         inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t_4*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t + uhs_c_t_4*uhs_h_3_t_12 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
-            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_t_5*uhs_e_2_in_axes3_x
+        uhs_c_t + uhs_c_t_4*uhs_s_3 - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_t_5
         )
         uhs_c_in_axes3_y = (
-        uhs_c_t_2 + uhs_c_t_4*uhs_e_2_in_axes3_x + uhs_c_t_5*uhs_h_3_t_12 -
-            uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
+        uhs_c_t_2 + uhs_c_3*uhs_c_t_4 + uhs_c_t_5*uhs_s_3 - uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y
+            - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
         uhs_c_t_3 - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
@@ -5094,12 +5076,8 @@ def _run_legs(m, X, V, A):
         uhs_c_true_in_axes3_x = uhs_c_in_axes3_x - uhs_acc_3_in_axes3_x*uhs_link3_mass
         uhs_c_true_in_axes3_y = uhs_c_in_axes3_y - uhs_acc_3_in_axes3_y*uhs_link3_mass
         uhs_c_true_in_axes3_z = uhs_c_in_axes3_z - uhs_acc_3_in_axes3_z*uhs_link3_mass
-        uhs_c_true_t = (
-        uhs_c_true_in_axes3_x*uhs_e_2_in_axes3_x - uhs_c_true_in_axes3_y*uhs_h_3_t_12
-        )
-        uhs_c_true_t_2 = (
-        uhs_c_true_in_axes3_x*uhs_h_3_t_12 + uhs_c_true_in_axes3_y*uhs_e_2_in_axes3_x
-        )
+        uhs_c_true_t = uhs_c_3*uhs_c_true_in_axes3_x - uhs_c_true_in_axes3_y*uhs_s_3
+        uhs_c_true_t_2 = uhs_c_3*uhs_c_true_in_axes3_y + uhs_c_true_in_axes3_x*uhs_s_3
         uhs_c_true_t_3 = uhs_c_2*uhs_c_true_in_axes3_z - uhs_c_true_t_2*uhs_e_1_in_axes3_z
         uhs_c_true_t_4 = -uhs_c_2*uhs_c_true_t_2 - uhs_c_true_in_axes3_z*uhs_e_1_in_axes3_z
         uhs_c_true_t_5 = uhs_c_1*uhs_c_true_t_3 - uhs_c_true_t*uhs_s_1
@@ -5117,8 +5095,8 @@ def _run_legs(m, X, V, A):
             uhs_base_frame_zz*uhs_c_true_t_4
         )
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
@@ -5201,7 +5179,7 @@ def _run_potential(m, X):
             uhs_platform_point_z, uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3,
             uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -5211,43 +5189,46 @@ def _run_potential(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
-        uhs_h_3_in_spec2_z = (
-        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
-        )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
-        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-q_2) displacement of joint 2
-        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_h_3_in_spec2_z = uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3
         # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
         uhs_acc_3_t_4 = uhs_acc_3_t*uhs_c_1 + uhs_acc_3_t_2*uhs_s_1
         uhs_g_in_axes2_z = uhs_acc_3_t_2*uhs_c_1 - uhs_acc_3_t*uhs_s_1
@@ -5260,12 +5241,12 @@ def _run_potential(m, X):
             uhs_link2_mass*(uhs_e_1_in_axes3_z*uhs_potential_t_4 - uhs_c_2*uhs_potential_t_3)) -
             uhs_g_in_axes2_x*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
             uhs_link2_mass*(uhs_c_2*uhs_potential_t_4 + uhs_e_1_in_axes3_z*uhs_potential_t_3)) -
-            uhs_g_in_axes2_z*(uhs_h_2_in_spec2_y + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
+            uhs_g_in_axes2_z*(uhs_h_2_in_spec2_y + uhs_c_3*uhs_h_3_in_spec3_y +
             uhs_link2_mass*(uhs_c_1*uhs_potential_t_2 - uhs_potential_t*uhs_s_1) -
-            uhs_h_3_in_spec3_z*uhs_h_3_t_12)
+            uhs_h_3_in_spec3_z*uhs_s_3)
         )
         ok = (
-        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+        ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
             _TOLERANCE * _TOLERANCE * uhs_size_t)
         )
         # (potential) potential energy
@@ -5339,7 +5320,7 @@ def _run_condition(m, X):
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-h_3) first moment of link 3 about the connection point
+        # (uhs-S) from the base point to the connection point
         uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
@@ -5349,52 +5330,56 @@ def _run_condition(m, X):
         uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
-        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
-        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
-        uhs_h_3_t_4 = (
-        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
-            uhs_base_frame_zx*uhs_h_3_t_3
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
+        uhs_S_in_turn1_x = (
+        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        uhs_h_3_t_5 = (
-        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
-            uhs_base_frame_zy*uhs_h_3_t_3
+        uhs_S_in_turn1_y = (
+        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        uhs_h_3_t_6 = (
-        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
-            uhs_base_frame_zz*uhs_h_3_t_3
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
-        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
-        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
-        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
-        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-rho2_2) squared amplitude
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
+        # (uhs-root_2) root, with the sign of the branch
+        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
+        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
+        uhs_c_3 = cos(uhs_q_3_t)
+        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
-        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
-        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
         # (uhs-w_2) reciprocal vector 2
-        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
-        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
-        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
         uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
         uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
         uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
         # (uhs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        uhs_pivot_size = abs(uhs_h_3_t_7)
-        uhs_pivot_size_2 = abs(uhs_h_3_t_8)
-        uhs_pivot_size_3 = abs(uhs_h_3_t_9)
+        uhs_pivot_size = abs(uhs_rho2_1)
+        uhs_pivot_size_2 = abs(uhs_rho2_2)
+        uhs_pivot_size_3 = abs(uhs_root_2)
         uhs_pivot_size_4 = abs(uhs_v_1_in_axes2_z)
         uhs_least_pivots = (
         least(least(least(inv_uhs_size*uhs_pivot_size_3, inv_uhs_size*uhs_pivot_size_4),
@@ -5412,8 +5397,8 @@ def _run_condition(m, X):
         uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 + uhs_spread_t_3*uhs_spread_t_3
         )
         clear = (
-        clear & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
-            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
+        clear & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
         # (spread) rms distance of the platform points from their centroid

@@ -1995,61 +1995,61 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real six_r_q_x, six_r_q_y, six_r_q_z, six_r_n_m1_t, six_r_n_m1_t_2, six_r_n_m1_t_3,
-        six_r_e_2_in_axes5_z, six_r_h_4_t, six_r_h_4_in_spec2_z, six_r_h_4_in_spec3_y,
-        six_r_e_4_in_axes5_x, six_r_J_5_t, six_r_c_1, six_r_s_1, six_r_c_2, six_r_s_2, six_r_c_3,
-        six_r_s_3, six_r_e_2_in_axes5_y, axis_z_six_r_axes5_x, axis_z_six_r_axes5_y,
-        axis_z_six_r_axes5_z, axis_y_six_r_axes5_x, axis_y_six_r_axes5_y, axis_y_six_r_axes5_z,
-        axis_x_six_r_axes5_x, axis_x_six_r_axes5_y, axis_x_six_r_axes5_z, six_r_r_1_in_axes5_z,
-        six_r_r_1_in_axes5_x, six_r_r_1_in_axes5_y, six_r_e_1_in_axes5_z, six_r_e_1_in_axes5_x,
-        six_r_e_1_in_axes5_y, six_r_v_1_in_axes5_x, six_r_v_1_in_axes5_y, six_r_v_1_in_axes5_z,
-        six_r_e_2_in_axes5_x, six_r_v_2_in_axes5_x, six_r_v_2_in_axes5_y, six_r_v_2_in_axes5_z,
-        six_r_v_3_in_axes5_x, six_r_v_3_in_axes5_y, six_r_v_3_in_axes5_z, six_r_v_4_in_axes5_z,
-        six_r_d_2_in_spec2_x, six_r_bias_t_3, six_r_d_2_in_axes5_z, six_r_d_2_in_axes5_x,
-        six_r_d_2_in_axes5_y, six_r_d_3_in_axes5_z, six_r_d_3_in_axes5_x, six_r_d_3_in_axes5_y,
-        six_r_d_4_in_axes5_x, six_r_bias_t_16, six_r_d_5_in_axes5_x, six_r_bias_t_17,
-        six_r_g_in_axes1_y, six_r_g_in_axes2_x, six_r_g_in_axes2_y, six_r_g_in_axes3_x,
-        six_r_g_in_axes3_y, six_r_g_in_axes4_x, six_r_g_in_axes4_y, six_r_g_in_axes5_x,
-        six_r_g_in_axes5_y, six_r_g_in_axes5_z, six_r_d_Gamma_4_t, six_r_mu_2_t, six_r_mu_2_t_2,
-        six_r_mu_2_t_3, six_r_mu_1_t, six_r_alpha_in_axes5_y, six_r_S_dot_t_14, six_r_S_dot_t_15,
-        six_r_S_dot_t_16, six_r_S_dot_x, six_r_S_dot_y, six_r_S_dot_z, six_r_omega_in_axes5_x,
-        six_r_omega_in_axes5_y, six_r_omega_in_axes5_z, six_r_n_m1_in_axes5_y,
-        six_r_end_p1_in_axes5_y, six_r_n_m1_t_11, six_r_n_m1_t_12, six_r_n_m1_in_axes4_z,
-        six_r_n_m1_x, six_r_n_m1_y, six_r_n_m1_z, six_r_end_p1_in_axes5_z, six_r_n_m2_t,
-        six_r_n_m2_t_2, six_r_n_m2_in_axes4_z, six_r_n_m2_x, six_r_n_m2_y, six_r_n_m2_z,
-        six_r_w_1_t_8, inv_six_r_w_1_t_8, six_r_w_1_t_9, six_r_w_1_t_10, six_r_w_1_t_11,
-        six_r_w_1_t_14, six_r_w_1_t_18, six_r_w_1_t_21, six_r_w_1_t_24, inv_six_r_w_1_t_24,
-        six_r_w_1_t_25, six_r_w_1_t_26, six_r_w_1_t_27, six_r_w_1_t_28, six_r_w_1_t_29,
-        six_r_w_1_t_35, six_r_w_1_t_40, six_r_w_1_t_45, inv_six_r_w_1_t_45, six_r_w_1_t_46,
-        six_r_w_1_t_47, six_r_w_1_t_48, six_r_w_1_t_49, six_r_w_1_t_50, six_r_w_1_t_51,
-        six_r_w_1_t_57, six_r_w_1_t_63, inv_six_r_w_1_t_63, six_r_w_1_t_64, six_r_w_1_t_65,
-        six_r_w_1_t_66, six_r_w_1_t_67, six_r_w_1_t_68, six_r_w_1_t_69, six_r_w_1_t_75,
-        inv_six_r_w_1_t_75, six_r_w_1_t_76, six_r_w_1_t_77, six_r_w_1_t_78, six_r_m1_w_1_t,
-        six_r_m2_w_1_t, six_r_w_2_in_axes5_x, six_r_w_2_in_axes5_y, six_r_w_2_in_axes5_z, six_r_w_2_x,
-        six_r_w_2_y, six_r_w_2_z, six_r_m1_w_2, six_r_m2_w_2, six_r_o_2_t, six_r_o_2_in_axes5_z,
-        six_r_o_2_in_axes5_y, six_r_H_a_2_t, six_r_H_a_2_t_2, six_r_H_a_2_t_3, six_r_H_a_2_x,
-        six_r_H_a_2_y, six_r_H_a_2_z, six_r_S_ddot_x, six_r_S_ddot_y, six_r_S_ddot_z, six_r_etad_1_t,
-        six_r_etad_2_t, six_r_eta_1_2, six_r_eta_2_t, six_r_qd_1_t_3, six_r_qd_1_t_4, six_r_qd_1_t_5,
-        six_r_qd_1_t_6, six_r_qd_1_t_7, six_r_qd_1_t_8, six_r_qd_1_t_9, six_r_qd_1_t_10,
-        six_r_qd_1_t_11, six_r_qd_4_t, six_r_qd_4_t_2, six_r_qd_5_t, six_r_nd_m1_t, six_r_qd_1_t_17,
-        six_r_qd_1_t_18, six_r_qd_1, six_r_qd_4_2, six_r_qd_5_2, six_r_omega_1_in_axes2_x_2,
-        six_r_omega_1_t_4, six_r_omega_2_in_axes3_x_2, six_r_omega_2_in_axes3_y_2,
-        six_r_W_2_in_axes2_yz_2, six_r_omega_3_in_axes3_z_2, six_r_omega_3_in_axes4_x_2,
-        six_r_omega_3_in_axes4_y_2, six_r_omega_4_in_axes4_z_2, six_r_omega_4_in_axes5_y_2,
-        six_r_W_4_in_axes5_xy_2, six_r_omega_5_in_axes5_z_2, six_r_W_5_t_4, six_r_W_5_t_5,
-        six_r_W_5_t_6, six_r_W_5_in_axes5_xz_2, six_r_zeta_2_in_axes2_y_2, six_r_zeta_3_t_2,
-        six_r_zeta_3_in_axes3_y, six_r_zeta_4_in_axes4_x_2, six_r_zeta_4_in_axes4_y,
-        six_r_zeta_5_in_axes5_x_2, six_r_zeta_5_t_2, six_r_bias_t_19, six_r_bias_t_20,
-        six_r_bias_in_axes5_x_2, six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2,
-        six_r_nu_2_2, six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z,
-        six_r_qdd_1_t_3, six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_U_x,
-        six_r_U_y, six_r_U_z, six_r_Z_a_t, six_r_Z_a_t_2, six_r_Z_a_t_3, six_r_Q_xx, six_r_Q_yy,
-        six_r_Q_zz, six_r_Q_xy, six_r_Q_xz, six_r_Q_yz, six_r_M_ta_t_13, six_r_M_ta_t_14,
-        six_r_M_ta_t_15, six_r_M_ta_t_16, six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19,
-        six_r_M_ta_t_20, six_r_M_ta_t_21, six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3,
-        six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6, six_r_o_2_x_2, six_r_o_2_y_2, six_r_o_2_z_2,
-        six_r_acc_5_in_axes5_x, six_r_acc_5_in_axes5_y, six_r_acc_5_in_axes5_z, six_r_c_in_axes5_x,
-        six_r_c_in_axes5_y, six_r_c_in_axes5_z, six_r_c_m_x, six_r_c_m_y, six_r_c_m_z;
+    real six_r_q_x, six_r_q_y, six_r_q_z, six_r_n_m1_t, six_r_n_m1_t_2, six_r_n_m1_t_3, six_r_c_1,
+        six_r_s_1, six_r_c_2, six_r_s_2, six_r_c_3, six_r_s_3, six_r_c_4, six_r_s_4,
+        six_r_h_4_in_spec2_z, six_r_h_4_in_spec3_y, six_r_c_5, six_r_s_5, six_r_e_2_in_axes5_y,
+        axis_z_six_r_axes5_x, axis_z_six_r_axes5_y, axis_z_six_r_axes5_z, axis_y_six_r_axes5_x,
+        axis_y_six_r_axes5_y, axis_y_six_r_axes5_z, axis_x_six_r_axes5_x, axis_x_six_r_axes5_y,
+        axis_x_six_r_axes5_z, six_r_r_1_in_axes5_z, six_r_r_1_in_axes5_x, six_r_r_1_in_axes5_y,
+        six_r_e_1_in_axes5_z, six_r_e_1_in_axes5_x, six_r_e_1_in_axes5_y, six_r_v_1_in_axes5_x,
+        six_r_v_1_in_axes5_y, six_r_v_1_in_axes5_z, six_r_e_2_in_axes5_x, six_r_v_2_in_axes5_x,
+        six_r_v_2_in_axes5_y, six_r_v_2_in_axes5_z, six_r_v_3_in_axes5_x, six_r_v_3_in_axes5_y,
+        six_r_v_3_in_axes5_z, six_r_v_4_in_axes5_z, six_r_d_2_in_spec2_x, six_r_bias_t_3,
+        six_r_d_2_in_axes5_z, six_r_d_2_in_axes5_x, six_r_d_2_in_axes5_y, six_r_d_3_in_axes5_z,
+        six_r_d_3_in_axes5_x, six_r_d_3_in_axes5_y, six_r_d_4_in_axes5_x, six_r_bias_t_16,
+        six_r_d_5_in_axes5_x, six_r_bias_t_17, six_r_g_in_axes1_y, six_r_g_in_axes2_x,
+        six_r_g_in_axes2_y, six_r_g_in_axes3_x, six_r_g_in_axes3_y, six_r_g_in_axes4_x,
+        six_r_g_in_axes4_y, six_r_g_in_axes5_x, six_r_g_in_axes5_y, six_r_g_in_axes5_z,
+        six_r_d_Gamma_4_t, six_r_mu_2_t, six_r_mu_2_t_2, six_r_mu_2_t_3, six_r_mu_1_t,
+        six_r_alpha_in_axes5_y, six_r_S_dot_t_14, six_r_S_dot_t_15, six_r_S_dot_t_16, six_r_S_dot_x,
+        six_r_S_dot_y, six_r_S_dot_z, six_r_omega_in_axes5_x, six_r_omega_in_axes5_y,
+        six_r_omega_in_axes5_z, six_r_n_m1_in_axes5_y, six_r_end_p1_in_axes5_y, six_r_n_m1_t_11,
+        six_r_n_m1_t_12, six_r_n_m1_in_axes4_z, six_r_n_m1_x, six_r_n_m1_y, six_r_n_m1_z,
+        six_r_end_p1_in_axes5_z, six_r_n_m2_t, six_r_n_m2_t_2, six_r_n_m2_in_axes4_z, six_r_n_m2_x,
+        six_r_n_m2_y, six_r_n_m2_z, six_r_w_1_t_8, inv_six_r_w_1_t_8, six_r_w_1_t_9, six_r_w_1_t_10,
+        six_r_w_1_t_11, six_r_w_1_t_14, six_r_w_1_t_18, six_r_w_1_t_21, six_r_w_1_t_24,
+        inv_six_r_w_1_t_24, six_r_w_1_t_25, six_r_w_1_t_26, six_r_w_1_t_27, six_r_w_1_t_28,
+        six_r_w_1_t_29, six_r_w_1_t_35, six_r_w_1_t_40, six_r_w_1_t_45, inv_six_r_w_1_t_45,
+        six_r_w_1_t_46, six_r_w_1_t_47, six_r_w_1_t_48, six_r_w_1_t_49, six_r_w_1_t_50,
+        six_r_w_1_t_51, six_r_w_1_t_57, six_r_w_1_t_63, inv_six_r_w_1_t_63, six_r_w_1_t_64,
+        six_r_w_1_t_65, six_r_w_1_t_66, six_r_w_1_t_67, six_r_w_1_t_68, six_r_w_1_t_69,
+        six_r_w_1_t_75, inv_six_r_w_1_t_75, six_r_w_1_t_76, six_r_w_1_t_77, six_r_w_1_t_78,
+        six_r_m1_w_1_t, six_r_m2_w_1_t, six_r_w_2_in_axes5_x, six_r_w_2_in_axes5_y,
+        six_r_w_2_in_axes5_z, six_r_w_2_x, six_r_w_2_y, six_r_w_2_z, six_r_m1_w_2, six_r_m2_w_2,
+        six_r_o_2_t, six_r_o_2_in_axes5_z, six_r_o_2_in_axes5_y, six_r_H_a_2_t, six_r_H_a_2_t_2,
+        six_r_H_a_2_t_3, six_r_H_a_2_x, six_r_H_a_2_y, six_r_H_a_2_z, six_r_S_ddot_x, six_r_S_ddot_y,
+        six_r_S_ddot_z, six_r_etad_1_t, six_r_etad_2_t, six_r_eta_1_2, six_r_eta_2_t, six_r_qd_1_t_3,
+        six_r_qd_1_t_4, six_r_qd_1_t_5, six_r_qd_1_t_6, six_r_qd_1_t_7, six_r_qd_1_t_8,
+        six_r_qd_1_t_9, six_r_qd_1_t_10, six_r_qd_1_t_11, six_r_qd_4_t, six_r_qd_4_t_2, six_r_qd_5_t,
+        six_r_nd_m1_t, six_r_qd_1_t_17, six_r_qd_1_t_18, six_r_qd_1, six_r_qd_4_2, six_r_qd_5_2,
+        six_r_omega_1_in_axes2_x_2, six_r_omega_1_t_4, six_r_omega_2_in_axes3_x_2,
+        six_r_omega_2_in_axes3_y_2, six_r_W_2_in_axes2_yz_2, six_r_omega_3_in_axes3_z_2,
+        six_r_omega_3_in_axes4_x_2, six_r_omega_3_in_axes4_y_2, six_r_omega_4_in_axes4_z_2,
+        six_r_omega_4_in_axes5_y_2, six_r_W_4_in_axes5_xy_2, six_r_omega_5_in_axes5_z_2,
+        six_r_W_5_t_4, six_r_W_5_t_5, six_r_W_5_t_6, six_r_W_5_in_axes5_xz_2,
+        six_r_zeta_2_in_axes2_y_2, six_r_zeta_3_t_2, six_r_zeta_3_in_axes3_y,
+        six_r_zeta_4_in_axes4_x_2, six_r_zeta_4_in_axes4_y, six_r_zeta_5_in_axes5_x_2,
+        six_r_zeta_5_t_2, six_r_bias_t_19, six_r_bias_t_20, six_r_bias_in_axes5_x_2,
+        six_r_bias_in_axes5_y_2, six_r_bias_in_axes5_z_2, six_r_nu_1_2, six_r_nu_2_2,
+        six_r_S_ddot_in_axes5_x, six_r_S_ddot_in_axes5_y, six_r_S_ddot_in_axes5_z, six_r_qdd_1_t_3,
+        six_r_qdd_1_t_4, six_r_qdd_1_t_5, six_r_qdd_4, six_r_qdd_5, six_r_U_x, six_r_U_y, six_r_U_z,
+        six_r_Z_a_t, six_r_Z_a_t_2, six_r_Z_a_t_3, six_r_Q_xx, six_r_Q_yy, six_r_Q_zz, six_r_Q_xy,
+        six_r_Q_xz, six_r_Q_yz, six_r_M_ta_t_13, six_r_M_ta_t_14, six_r_M_ta_t_15, six_r_M_ta_t_16,
+        six_r_M_ta_t_17, six_r_M_ta_t_18, six_r_M_ta_t_19, six_r_M_ta_t_20, six_r_M_ta_t_21,
+        six_r_M_aa_t, six_r_M_aa_t_2, six_r_M_aa_t_3, six_r_M_aa_t_4, six_r_M_aa_t_5, six_r_M_aa_t_6,
+        six_r_o_2_x_2, six_r_o_2_y_2, six_r_o_2_z_2, six_r_acc_5_in_axes5_x, six_r_acc_5_in_axes5_y,
+        six_r_acc_5_in_axes5_z, six_r_c_in_axes5_x, six_r_c_in_axes5_y, six_r_c_in_axes5_z,
+        six_r_c_m_x, six_r_c_m_y, six_r_c_m_z;
 } values_six_r;
 
 INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const real *s,
@@ -2103,18 +2103,6 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
     static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
-    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-    const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-    v->six_r_e_2_in_axes5_z = cosine(six_r_q_4);
-    v->six_r_h_4_t = sine(six_r_q_4);
-    v->six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_z[i] +
-        m->six_r_h_4_in_spec4_y[i]*v->six_r_h_4_t;
-    v->six_r_h_4_in_spec3_y = v->six_r_e_2_in_axes5_z*m->six_r_h_4_in_spec4_y[i] -
-        m->six_r_h_4_in_spec4_z[i]*v->six_r_h_4_t;
-    /* (six_r-J_5) inertia tensor of link 5 about the connection point */
-    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-    v->six_r_e_4_in_axes5_x = cosine(six_r_q_5);
-    v->six_r_J_5_t = sine(six_r_q_5);
     /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
     const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
     v->six_r_c_1 = cosine(six_r_q_1);
@@ -2130,25 +2118,38 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->six_r_c_3 = cosine(six_r_q_3);
     /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
     v->six_r_s_3 = sine(six_r_q_3);
+    /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
+    const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
+    v->six_r_c_4 = cosine(six_r_q_4);
+    /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
+    v->six_r_s_4 = sine(six_r_q_4);
+    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
+    v->six_r_h_4_in_spec2_z = v->six_r_c_4*m->six_r_h_4_in_spec4_z[i] +
+        m->six_r_h_4_in_spec4_y[i]*v->six_r_s_4;
+    v->six_r_h_4_in_spec3_y = v->six_r_c_4*m->six_r_h_4_in_spec4_y[i] -
+        m->six_r_h_4_in_spec4_z[i]*v->six_r_s_4;
+    /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
+    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
+    v->six_r_c_5 = cosine(six_r_q_5);
+    /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
+    v->six_r_s_5 = sine(six_r_q_5);
     /* (six_r-S_dot) velocity of the connection point */
-    v->six_r_e_2_in_axes5_y = v->six_r_e_4_in_axes5_x*v->six_r_h_4_t;
-    const real six_r_S_dot_t = v->six_r_c_3*v->six_r_h_4_t;
-    const real six_r_S_dot_t_2 = v->six_r_h_4_t*v->six_r_s_3;
+    v->six_r_e_2_in_axes5_y = v->six_r_c_5*v->six_r_s_4;
+    const real six_r_S_dot_t = v->six_r_c_3*v->six_r_s_4;
+    const real six_r_S_dot_t_2 = v->six_r_s_3*v->six_r_s_4;
     const real six_r_S_dot_t_3 = six_r_S_dot_t*v->six_r_s_2 + six_r_S_dot_t_2*v->six_r_c_2;
     const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v->six_r_s_2 - six_r_S_dot_t*v->six_r_c_2;
-    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v->six_r_c_1 -
-        v->six_r_e_2_in_axes5_z*v->six_r_s_1;
-    const real six_r_S_dot_t_6 = v->six_r_c_1*v->six_r_e_2_in_axes5_z +
-        six_r_S_dot_t_4*v->six_r_s_1;
+    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v->six_r_c_1 - v->six_r_c_4*v->six_r_s_1;
+    const real six_r_S_dot_t_6 = v->six_r_c_1*v->six_r_c_4 + six_r_S_dot_t_4*v->six_r_s_1;
     v->axis_z_six_r_axes5_x = six_r_S_dot_t_3*m->six_r_base_frame_xx[i] +
         six_r_S_dot_t_5*m->six_r_base_frame_xy[i] + six_r_S_dot_t_6*m->six_r_base_frame_xz[i];
     v->axis_z_six_r_axes5_y = six_r_S_dot_t_3*m->six_r_base_frame_yx[i] +
         six_r_S_dot_t_5*m->six_r_base_frame_yy[i] + six_r_S_dot_t_6*m->six_r_base_frame_yz[i];
     v->axis_z_six_r_axes5_z = six_r_S_dot_t_3*m->six_r_base_frame_zx[i] +
         six_r_S_dot_t_5*m->six_r_base_frame_zy[i] + six_r_S_dot_t_6*m->six_r_base_frame_zz[i];
-    const real six_r_S_dot_t_7 = v->six_r_e_2_in_axes5_z*v->six_r_e_4_in_axes5_x;
-    const real six_r_S_dot_t_8 = v->six_r_J_5_t*v->six_r_s_3 - six_r_S_dot_t_7*v->six_r_c_3;
-    const real six_r_S_dot_t_9 = -v->six_r_J_5_t*v->six_r_c_3 - six_r_S_dot_t_7*v->six_r_s_3;
+    const real six_r_S_dot_t_7 = v->six_r_c_4*v->six_r_c_5;
+    const real six_r_S_dot_t_8 = v->six_r_s_3*v->six_r_s_5 - six_r_S_dot_t_7*v->six_r_c_3;
+    const real six_r_S_dot_t_9 = -v->six_r_c_3*v->six_r_s_5 - six_r_S_dot_t_7*v->six_r_s_3;
     const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v->six_r_s_2 + six_r_S_dot_t_9*v->six_r_c_2;
     const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v->six_r_s_2 - six_r_S_dot_t_8*v->six_r_c_2;
     const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v->six_r_c_1 -
@@ -2171,23 +2172,23 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->axis_x_six_r_axes5_z = v->axis_y_six_r_axes5_x*v->axis_z_six_r_axes5_y -
         v->axis_y_six_r_axes5_y*v->axis_z_six_r_axes5_x;
     /* (six_r-r_4) from joint 4 to the connection point, along the links */
-    const real six_r_r_4_in_axes4_x = v->six_r_J_5_t*m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes4_x = m->six_r_platform_joint_offset_x[i]*v->six_r_s_5;
     const real six_r_r_4_in_axes4_z = m->six_r_joint5_offset_x[i] +
-        v->six_r_e_4_in_axes5_x*m->six_r_platform_joint_offset_x[i];
-    const real six_r_r_4_in_axes3_x = -v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x;
-    const real six_r_r_4_in_axes3_z = v->six_r_h_4_t*six_r_r_4_in_axes4_x;
+        v->six_r_c_5*m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes3_x = -v->six_r_c_4*six_r_r_4_in_axes4_x;
+    const real six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*v->six_r_s_4;
     /* (six_r-r_3) from joint 3 to the connection point, along the links */
     const real six_r_r_3_in_axes3_y = m->six_r_joint4_offset_x[i] + six_r_r_4_in_axes4_z;
     const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*v->six_r_s_3 -
         v->six_r_c_3*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_t = v->six_r_h_4_t*six_r_r_4_in_axes3_z;
-    const real six_r_r_3_t_2 = v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
-    const real six_r_r_3_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x;
-    const real six_r_r_3_in_axes5_z = v->six_r_h_4_t*six_r_r_4_in_axes3_x + six_r_r_3_t_2;
-    const real six_r_r_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y +
-        v->six_r_J_5_t*six_r_r_3_t_3;
-    const real six_r_r_3_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
-        v->six_r_J_5_t*six_r_r_3_in_axes3_y;
+    const real six_r_r_3_t = six_r_r_4_in_axes3_z*v->six_r_s_4;
+    const real six_r_r_3_t_2 = v->six_r_c_4*six_r_r_4_in_axes3_z;
+    const real six_r_r_3_t_3 = six_r_r_3_t - v->six_r_c_4*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_in_axes5_z = six_r_r_4_in_axes3_x*v->six_r_s_4 + six_r_r_3_t_2;
+    const real six_r_r_3_in_axes5_x = v->six_r_c_5*six_r_r_3_in_axes3_y +
+        six_r_r_3_t_3*v->six_r_s_5;
+    const real six_r_r_3_in_axes5_y = v->six_r_c_5*six_r_r_3_t_3 -
+        six_r_r_3_in_axes3_y*v->six_r_s_5;
     /* (six_r-r_2) from joint 2 to the connection point, along the links */
     const real six_r_r_2_in_axes2_x = m->six_r_joint3_offset_x[i] +
         v->six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*v->six_r_s_3;
@@ -2197,12 +2198,10 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
         v->six_r_c_3*six_r_r_3_in_axes2_y;
     const real six_r_r_2_t_2 = six_r_r_3_in_axes2_y*v->six_r_s_3 +
         v->six_r_c_3*six_r_r_2_in_axes2_x;
-    const real six_r_r_2_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_2_t;
-    const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_2_t;
-    const real six_r_r_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_2_t_2 +
-        v->six_r_J_5_t*six_r_r_2_t_3;
-    const real six_r_r_2_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
-        v->six_r_J_5_t*six_r_r_2_t_2;
+    const real six_r_r_2_t_3 = six_r_r_3_t - v->six_r_c_4*six_r_r_2_t;
+    const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*v->six_r_s_4;
+    const real six_r_r_2_in_axes5_x = v->six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*v->six_r_s_5;
+    const real six_r_r_2_in_axes5_y = v->six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*v->six_r_s_5;
     /* (six_r-r_1) from joint 1 to the connection point, along the links */
     const real six_r_r_1_in_axes1_z = m->six_r_joint2_offset_x[i] -
         six_r_r_3_in_axes2_y*v->six_r_s_2 + v->six_r_c_2*six_r_r_2_in_axes2_x;
@@ -2212,21 +2211,17 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
         six_r_r_1_in_axes1_z*v->six_r_s_2;
     const real six_r_r_1_t_3 = six_r_r_1_t*v->six_r_s_3 - v->six_r_c_3*six_r_r_1_t_2;
     const real six_r_r_1_t_4 = v->six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*v->six_r_s_3;
-    const real six_r_r_1_t_5 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_1_t_3;
-    v->six_r_r_1_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_1_t_3;
-    v->six_r_r_1_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_r_1_t_4 +
-        v->six_r_J_5_t*six_r_r_1_t_5;
-    v->six_r_r_1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_r_1_t_5 -
-        v->six_r_J_5_t*six_r_r_1_t_4;
+    const real six_r_r_1_t_5 = six_r_r_3_t - v->six_r_c_4*six_r_r_1_t_3;
+    v->six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*v->six_r_s_4;
+    v->six_r_r_1_in_axes5_x = v->six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*v->six_r_s_5;
+    v->six_r_r_1_in_axes5_y = v->six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*v->six_r_s_5;
     /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
     const real six_r_v_1_t = v->six_r_c_2*v->six_r_s_3 + v->six_r_c_3*v->six_r_s_2;
     const real six_r_v_1_t_2 = v->six_r_c_2*v->six_r_c_3 - v->six_r_s_2*v->six_r_s_3;
-    const real six_r_v_1_t_3 = v->six_r_e_2_in_axes5_z*six_r_v_1_t;
-    v->six_r_e_1_in_axes5_z = v->six_r_h_4_t*six_r_v_1_t;
-    v->six_r_e_1_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_v_1_t_2 -
-        v->six_r_J_5_t*six_r_v_1_t_3;
-    v->six_r_e_1_in_axes5_y = -v->six_r_J_5_t*six_r_v_1_t_2 -
-        v->six_r_e_4_in_axes5_x*six_r_v_1_t_3;
+    const real six_r_v_1_t_3 = v->six_r_c_4*six_r_v_1_t;
+    v->six_r_e_1_in_axes5_z = v->six_r_s_4*six_r_v_1_t;
+    v->six_r_e_1_in_axes5_x = v->six_r_c_5*six_r_v_1_t_2 - v->six_r_s_5*six_r_v_1_t_3;
+    v->six_r_e_1_in_axes5_y = -v->six_r_s_5*six_r_v_1_t_2 - v->six_r_c_5*six_r_v_1_t_3;
     v->six_r_v_1_in_axes5_x = v->six_r_e_1_in_axes5_y*v->six_r_r_1_in_axes5_z -
         v->six_r_e_1_in_axes5_z*v->six_r_r_1_in_axes5_y;
     v->six_r_v_1_in_axes5_y = v->six_r_e_1_in_axes5_z*v->six_r_r_1_in_axes5_x -
@@ -2234,25 +2229,24 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->six_r_v_1_in_axes5_z = v->six_r_e_1_in_axes5_x*v->six_r_r_1_in_axes5_y -
         v->six_r_e_1_in_axes5_y*v->six_r_r_1_in_axes5_x;
     /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-    v->six_r_e_2_in_axes5_x = v->six_r_J_5_t*v->six_r_h_4_t;
+    v->six_r_e_2_in_axes5_x = v->six_r_s_4*v->six_r_s_5;
     v->six_r_v_2_in_axes5_x = v->six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-        v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y;
-    v->six_r_v_2_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
+        v->six_r_c_4*six_r_r_2_in_axes5_y;
+    v->six_r_v_2_in_axes5_y = v->six_r_c_4*six_r_r_2_in_axes5_x -
         v->six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
     v->six_r_v_2_in_axes5_z = v->six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
         v->six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
     /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
     v->six_r_v_3_in_axes5_x = v->six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-        v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y;
-    v->six_r_v_3_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
+        v->six_r_c_4*six_r_r_3_in_axes5_y;
+    v->six_r_v_3_in_axes5_y = v->six_r_c_4*six_r_r_3_in_axes5_x -
         v->six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
     v->six_r_v_3_in_axes5_z = v->six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
         v->six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
     /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-    v->six_r_v_4_in_axes5_z = v->six_r_J_5_t*(v->six_r_J_5_t*six_r_r_4_in_axes4_x +
-        v->six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z) +
-        v->six_r_e_4_in_axes5_x*(v->six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-        v->six_r_J_5_t*six_r_r_4_in_axes4_z);
+    v->six_r_v_4_in_axes5_z = v->six_r_c_5*(v->six_r_c_5*six_r_r_4_in_axes4_x -
+        six_r_r_4_in_axes4_z*v->six_r_s_5) + v->six_r_s_5*(v->six_r_c_5*six_r_r_4_in_axes4_z +
+        six_r_r_4_in_axes4_x*v->six_r_s_5);
     /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
     v->six_r_d_2_in_spec2_x = v->six_r_c_2*m->six_r_joint2_offset_x[i];
     v->six_r_bias_t_3 = m->six_r_joint2_offset_x[i]*v->six_r_s_2;
@@ -2260,24 +2254,20 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
         v->six_r_d_2_in_spec2_x*v->six_r_s_3;
     const real six_r_bias_t_5 = v->six_r_c_3*v->six_r_d_2_in_spec2_x -
         v->six_r_bias_t_3*v->six_r_s_3;
-    const real six_r_bias_t_6 = six_r_bias_t_4*v->six_r_e_2_in_axes5_z;
-    v->six_r_d_2_in_axes5_z = six_r_bias_t_4*v->six_r_h_4_t;
-    v->six_r_d_2_in_axes5_x = six_r_bias_t_5*v->six_r_e_4_in_axes5_x -
-        v->six_r_J_5_t*six_r_bias_t_6;
-    v->six_r_d_2_in_axes5_y = -v->six_r_J_5_t*six_r_bias_t_5 -
-        six_r_bias_t_6*v->six_r_e_4_in_axes5_x;
+    const real six_r_bias_t_6 = six_r_bias_t_4*v->six_r_c_4;
+    v->six_r_d_2_in_axes5_z = six_r_bias_t_4*v->six_r_s_4;
+    v->six_r_d_2_in_axes5_x = six_r_bias_t_5*v->six_r_c_5 - six_r_bias_t_6*v->six_r_s_5;
+    v->six_r_d_2_in_axes5_y = -six_r_bias_t_5*v->six_r_s_5 - six_r_bias_t_6*v->six_r_c_5;
     const real six_r_bias_t_10 = m->six_r_joint3_offset_x[i]*v->six_r_s_3;
     const real six_r_bias_t_11 = v->six_r_c_3*m->six_r_joint3_offset_x[i];
-    const real six_r_bias_t_12 = six_r_bias_t_10*v->six_r_e_2_in_axes5_z;
-    v->six_r_d_3_in_axes5_z = six_r_bias_t_10*v->six_r_h_4_t;
-    v->six_r_d_3_in_axes5_x = six_r_bias_t_11*v->six_r_e_4_in_axes5_x -
-        v->six_r_J_5_t*six_r_bias_t_12;
-    v->six_r_d_3_in_axes5_y = -v->six_r_J_5_t*six_r_bias_t_11 -
-        six_r_bias_t_12*v->six_r_e_4_in_axes5_x;
-    v->six_r_d_4_in_axes5_x = v->six_r_e_4_in_axes5_x*m->six_r_joint4_offset_x[i];
-    v->six_r_bias_t_16 = v->six_r_J_5_t*m->six_r_joint4_offset_x[i];
-    v->six_r_d_5_in_axes5_x = v->six_r_e_4_in_axes5_x*m->six_r_joint5_offset_x[i];
-    v->six_r_bias_t_17 = v->six_r_J_5_t*m->six_r_joint5_offset_x[i];
+    const real six_r_bias_t_12 = six_r_bias_t_10*v->six_r_c_4;
+    v->six_r_d_3_in_axes5_z = six_r_bias_t_10*v->six_r_s_4;
+    v->six_r_d_3_in_axes5_x = six_r_bias_t_11*v->six_r_c_5 - six_r_bias_t_12*v->six_r_s_5;
+    v->six_r_d_3_in_axes5_y = -six_r_bias_t_11*v->six_r_s_5 - six_r_bias_t_12*v->six_r_c_5;
+    v->six_r_d_4_in_axes5_x = v->six_r_c_5*m->six_r_joint4_offset_x[i];
+    v->six_r_bias_t_16 = m->six_r_joint4_offset_x[i]*v->six_r_s_5;
+    v->six_r_d_5_in_axes5_x = v->six_r_c_5*m->six_r_joint5_offset_x[i];
+    v->six_r_bias_t_17 = m->six_r_joint5_offset_x[i]*v->six_r_s_5;
     /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
     const real six_r_g_in_axes1_x = m->six_r_acc_3_t[i]*v->six_r_c_1 +
         m->six_r_acc_3_t_2[i]*v->six_r_s_1;
@@ -2292,10 +2282,10 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
     v->six_r_g_in_axes3_y = v->six_r_c_3*v->six_r_g_in_axes2_x +
         v->six_r_g_in_axes2_y*v->six_r_s_3;
     /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-    v->six_r_g_in_axes4_x = v->six_r_g_in_axes1_y*v->six_r_h_4_t -
-        v->six_r_e_2_in_axes5_z*v->six_r_g_in_axes3_x;
-    v->six_r_g_in_axes4_y = v->six_r_e_2_in_axes5_z*v->six_r_g_in_axes1_y +
-        v->six_r_g_in_axes3_x*v->six_r_h_4_t;
+    v->six_r_g_in_axes4_x = v->six_r_g_in_axes1_y*v->six_r_s_4 -
+        v->six_r_c_4*v->six_r_g_in_axes3_x;
+    v->six_r_g_in_axes4_y = v->six_r_c_4*v->six_r_g_in_axes1_y +
+        v->six_r_g_in_axes3_x*v->six_r_s_4;
     /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
     v->six_r_g_in_axes5_x = v->axis_x_six_r_axes5_x*m->gravity_x +
         v->axis_x_six_r_axes5_y*m->gravity_y + v->axis_x_six_r_axes5_z*m->gravity_z;
@@ -2305,8 +2295,8 @@ INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const
         v->axis_z_six_r_axes5_y*m->gravity_y + v->axis_z_six_r_axes5_z*m->gravity_z;
     /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
-    v->six_r_d_Gamma_4_t = v->six_r_J_5_t*m->six_r_h_5_in_spec5_x[i] +
-        v->six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_y[i];
+    v->six_r_d_Gamma_4_t = v->six_r_c_5*m->six_r_h_5_in_spec5_y[i] +
+        m->six_r_h_5_in_spec5_x[i]*v->six_r_s_5;
     /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->six_r_mu_2_t = v->six_r_g_in_axes1_y*m->six_r_h_2_in_spec2_y[i] -
         v->six_r_g_in_axes2_y*m->six_r_h_2_in_spec2_z[i];
@@ -2370,18 +2360,15 @@ INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_n_m1_t_7 = v->six_r_c_2*six_r_n_m1_t_4 - v->six_r_n_m1_t_3*v->six_r_s_2;
     const real six_r_n_m1_t_8 = six_r_n_m1_t_6*v->six_r_s_3 - v->six_r_c_3*six_r_n_m1_t_7;
     const real six_r_n_m1_t_9 = v->six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*v->six_r_s_3;
-    const real six_r_n_m1_t_10 = v->six_r_h_4_t*six_r_n_m1_t_5 -
-        v->six_r_e_2_in_axes5_z*six_r_n_m1_t_8;
-    v->six_r_n_m1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_n_m1_t_9 +
-        v->six_r_J_5_t*six_r_n_m1_t_10;
-    v->six_r_end_p1_in_axes5_y = v->six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
-        v->six_r_J_5_t*six_r_n_m1_t_9;
+    const real six_r_n_m1_t_10 = six_r_n_m1_t_5*v->six_r_s_4 - v->six_r_c_4*six_r_n_m1_t_8;
+    v->six_r_n_m1_in_axes5_y = v->six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*v->six_r_s_5;
+    v->six_r_end_p1_in_axes5_y = v->six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*v->six_r_s_5;
     v->six_r_n_m1_t_11 = v->six_r_e_1_in_axes5_x*v->six_r_end_p1_in_axes5_y -
         v->six_r_e_1_in_axes5_y*v->six_r_n_m1_in_axes5_y;
     v->six_r_n_m1_t_12 = v->six_r_e_2_in_axes5_x*v->six_r_end_p1_in_axes5_y -
         v->six_r_e_2_in_axes5_y*v->six_r_n_m1_in_axes5_y;
-    v->six_r_n_m1_in_axes4_z = -v->six_r_J_5_t*v->six_r_n_m1_in_axes5_y -
-        v->six_r_e_4_in_axes5_x*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m1_in_axes4_z = -v->six_r_c_5*v->six_r_end_p1_in_axes5_y -
+        v->six_r_n_m1_in_axes5_y*v->six_r_s_5;
     v->six_r_n_m1_x = v->axis_y_six_r_axes5_x*v->six_r_n_m1_in_axes5_y -
         v->axis_x_six_r_axes5_x*v->six_r_end_p1_in_axes5_y;
     v->six_r_n_m1_y = v->axis_y_six_r_axes5_y*v->six_r_n_m1_in_axes5_y -
@@ -2389,13 +2376,12 @@ INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
     v->six_r_n_m1_z = v->axis_y_six_r_axes5_z*v->six_r_n_m1_in_axes5_y -
         v->axis_x_six_r_axes5_z*v->six_r_end_p1_in_axes5_y;
     /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-    v->six_r_end_p1_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_n_m1_t_5 +
-        v->six_r_h_4_t*six_r_n_m1_t_8;
+    v->six_r_end_p1_in_axes5_z = v->six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*v->six_r_s_4;
     v->six_r_n_m2_t = v->six_r_e_1_in_axes5_y*v->six_r_end_p1_in_axes5_z -
         v->six_r_e_1_in_axes5_z*v->six_r_end_p1_in_axes5_y;
     v->six_r_n_m2_t_2 = v->six_r_e_2_in_axes5_y*v->six_r_end_p1_in_axes5_z -
-        v->six_r_e_2_in_axes5_z*v->six_r_end_p1_in_axes5_y;
-    v->six_r_n_m2_in_axes4_z = v->six_r_J_5_t*v->six_r_end_p1_in_axes5_z;
+        v->six_r_c_4*v->six_r_end_p1_in_axes5_y;
+    v->six_r_n_m2_in_axes4_z = v->six_r_end_p1_in_axes5_z*v->six_r_s_5;
     v->six_r_n_m2_x = v->axis_z_six_r_axes5_x*v->six_r_end_p1_in_axes5_y -
         v->axis_y_six_r_axes5_x*v->six_r_end_p1_in_axes5_z;
     v->six_r_n_m2_y = v->axis_z_six_r_axes5_y*v->six_r_end_p1_in_axes5_y -
@@ -2665,7 +2651,7 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_omega_2_in_axes5_y_2 = six_r_omega_1_in_axes5_y -
         v->six_r_e_2_in_axes5_y*v->six_r_qd_1_t_18;
     const real six_r_omega_2_in_axes5_z_2 = six_r_omega_1_in_axes5_z -
-        v->six_r_e_2_in_axes5_z*v->six_r_qd_1_t_18;
+        v->six_r_c_4*v->six_r_qd_1_t_18;
     /* (six_r-W_2) centripetal tensor of link 2 */
     v->six_r_W_2_in_axes2_yz_2 = v->six_r_omega_1_t_4*v->six_r_qd_1_t_18;
     const real six_r_W_2_in_axes5_xy_2 =
@@ -2676,25 +2662,25 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
         six_r_omega_2_in_axes5_y_2*six_r_omega_2_in_axes5_z_2;
     /* (six_r-omega_3) angular velocity of link 3 */
     v->six_r_omega_3_in_axes3_z_2 = -v->six_r_qd_1_t_17 - v->six_r_qd_1_t_18;
-    v->six_r_omega_3_in_axes4_x_2 = v->six_r_h_4_t*v->six_r_omega_3_in_axes3_z_2 -
-        v->six_r_e_2_in_axes5_z*v->six_r_omega_2_in_axes3_x_2;
-    v->six_r_omega_3_in_axes4_y_2 = v->six_r_e_2_in_axes5_z*v->six_r_omega_3_in_axes3_z_2 +
-        v->six_r_h_4_t*v->six_r_omega_2_in_axes3_x_2;
-    const real six_r_omega_3_t_3 = v->six_r_J_5_t*v->six_r_omega_3_in_axes4_x_2;
-    const real six_r_omega_3_t_4 = v->six_r_e_4_in_axes5_x*v->six_r_omega_3_in_axes4_x_2;
-    const real six_r_omega_3_in_axes5_x_2 =
-        v->six_r_e_4_in_axes5_x*v->six_r_omega_2_in_axes3_y_2 + six_r_omega_3_t_3;
+    v->six_r_omega_3_in_axes4_x_2 = v->six_r_omega_3_in_axes3_z_2*v->six_r_s_4 -
+        v->six_r_c_4*v->six_r_omega_2_in_axes3_x_2;
+    v->six_r_omega_3_in_axes4_y_2 = v->six_r_c_4*v->six_r_omega_3_in_axes3_z_2 +
+        v->six_r_omega_2_in_axes3_x_2*v->six_r_s_4;
+    const real six_r_omega_3_t_3 = v->six_r_omega_3_in_axes4_x_2*v->six_r_s_5;
+    const real six_r_omega_3_t_4 = v->six_r_c_5*v->six_r_omega_3_in_axes4_x_2;
+    const real six_r_omega_3_in_axes5_x_2 = v->six_r_c_5*v->six_r_omega_2_in_axes3_y_2 +
+        six_r_omega_3_t_3;
     const real six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 -
-        v->six_r_J_5_t*v->six_r_omega_2_in_axes3_y_2;
+        v->six_r_omega_2_in_axes3_y_2*v->six_r_s_5;
     /* (six_r-W_3) centripetal tensor of link 3 */
     const real six_r_W_3_in_axes5_xy_2 =
         six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2;
     /* (six_r-omega_4) angular velocity of link 4 */
     v->six_r_omega_4_in_axes4_z_2 = v->six_r_omega_2_in_axes3_y_2 + v->six_r_qd_4_2;
-    const real six_r_omega_4_in_axes5_x_2 =
-        v->six_r_e_4_in_axes5_x*v->six_r_omega_4_in_axes4_z_2 + six_r_omega_3_t_3;
+    const real six_r_omega_4_in_axes5_x_2 = v->six_r_c_5*v->six_r_omega_4_in_axes4_z_2 +
+        six_r_omega_3_t_3;
     v->six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 -
-        v->six_r_J_5_t*v->six_r_omega_4_in_axes4_z_2;
+        v->six_r_omega_4_in_axes4_z_2*v->six_r_s_5;
     /* (six_r-W_4) centripetal tensor of link 4 */
     v->six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*v->six_r_omega_4_in_axes5_y_2;
     /* (six_r-omega_5) angular velocity of link 5 */
@@ -2710,12 +2696,12 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
         v->six_r_c_3*v->six_r_zeta_2_in_axes2_y_2;
     const real six_r_zeta_2_in_axes3_y_2 = v->six_r_W_2_in_axes2_yz_2*v->six_r_c_3 +
         v->six_r_s_3*v->six_r_zeta_2_in_axes2_y_2;
-    const real six_r_zeta_2_t_2 = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2;
-    const real six_r_zeta_2_in_axes5_z_2 = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x_2;
-    const real six_r_zeta_2_in_axes5_x_2 = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 -
-        v->six_r_J_5_t*six_r_zeta_2_t_2;
-    const real six_r_zeta_2_in_axes5_y_2 = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 -
-        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t_2;
+    const real six_r_zeta_2_t_2 = v->six_r_c_4*six_r_zeta_2_in_axes3_x_2;
+    const real six_r_zeta_2_in_axes5_z_2 = v->six_r_s_4*six_r_zeta_2_in_axes3_x_2;
+    const real six_r_zeta_2_in_axes5_x_2 = v->six_r_c_5*six_r_zeta_2_in_axes3_y_2 -
+        v->six_r_s_5*six_r_zeta_2_t_2;
+    const real six_r_zeta_2_in_axes5_y_2 = -v->six_r_s_5*six_r_zeta_2_in_axes3_y_2 -
+        v->six_r_c_5*six_r_zeta_2_t_2;
     /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
     v->six_r_zeta_3_t_2 = v->six_r_omega_2_in_axes3_y_2*v->six_r_qd_1_t_17;
     v->six_r_zeta_3_in_axes3_y = v->six_r_omega_2_in_axes3_x_2*v->six_r_qd_1_t_17;
@@ -2723,8 +2709,8 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - v->six_r_zeta_3_t_2;
     const real six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 +
         v->six_r_zeta_3_in_axes3_y;
-    const real six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*v->six_r_e_2_in_axes5_z;
-    const real six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*v->six_r_h_4_t;
+    const real six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*v->six_r_c_4;
+    const real six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*v->six_r_s_4;
     /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
     v->six_r_zeta_4_in_axes4_x_2 = v->six_r_omega_3_in_axes4_y_2*v->six_r_qd_4_2;
     v->six_r_zeta_4_in_axes4_y = -v->six_r_omega_3_in_axes4_x_2*v->six_r_qd_4_2;
@@ -2732,11 +2718,11 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
     const real six_r_beta_4_in_axes4_x_2 = v->six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2;
     const real six_r_beta_4_in_axes4_y_2 = v->six_r_zeta_4_in_axes4_y +
         six_r_beta_3_in_axes4_y_2;
-    const real six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*v->six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*v->six_r_c_5;
     const real six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 +
-        v->six_r_J_5_t*six_r_beta_4_in_axes4_x_2;
-    const real six_r_beta_4_t_4 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y_2;
-    const real six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*v->six_r_e_4_in_axes5_x -
+        six_r_beta_4_in_axes4_x_2*v->six_r_s_5;
+    const real six_r_beta_4_t_4 = six_r_beta_3_in_axes3_y_2*v->six_r_s_5;
+    const real six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*v->six_r_c_5 -
         six_r_beta_4_t_4;
     /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
     v->six_r_zeta_5_in_axes5_x_2 = v->six_r_omega_4_in_axes5_y_2*v->six_r_qd_5_2;
@@ -2785,11 +2771,11 @@ INLINE void stage_six_r_V_X_q(const prepared *m, size_t i, values_six_r *v)
         v->six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25) +
         v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
         v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*v->six_r_e_4_in_axes5_x +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*v->six_r_c_5 +
         v->six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) -
         v->six_r_bias_t_16*(six_r_beta_4_t_3 +
         v->six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 -
-        v->six_r_J_5_t*six_r_beta_3_t_2) +
+        six_r_beta_3_t_2*v->six_r_s_5) +
         v->six_r_d_5_in_axes5_x*(v->six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
         six_r_beta_4_in_axes5_y_2) -
         v->six_r_bias_t_17*(v->six_r_omega_3_in_axes4_y_2*v->six_r_omega_4_in_axes5_y_2 +
@@ -2925,8 +2911,7 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_omega_1_t;
     const real six_r_omega_2_in_axes5_y = v->six_r_e_2_in_axes5_y*six_r_qd_1_t_13 -
         six_r_omega_1_t_2;
-    const real six_r_omega_2_in_axes5_z = v->six_r_e_2_in_axes5_z*six_r_qd_1_t_13 -
-        six_r_omega_1_t_3;
+    const real six_r_omega_2_in_axes5_z = v->six_r_c_4*six_r_qd_1_t_13 - six_r_omega_1_t_3;
     /* (six_r-W_2) centripetal tensor of link 2 */
     const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13;
     const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
@@ -2935,16 +2920,16 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
     /* (six_r-omega_3) angular velocity of link 3 */
     const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13;
-    const real six_r_omega_3_in_axes4_x = v->six_r_h_4_t*six_r_omega_3_in_axes3_z -
-        v->six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_in_axes4_y = v->six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
-        v->six_r_h_4_t*six_r_omega_2_in_axes3_x;
-    const real six_r_omega_3_t = v->six_r_J_5_t*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_t_2 = v->six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
-    const real six_r_omega_3_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y +
+    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v->six_r_s_4 -
+        v->six_r_c_4*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v->six_r_c_4*six_r_omega_3_in_axes3_z +
+        six_r_omega_2_in_axes3_x*v->six_r_s_4;
+    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v->six_r_s_5;
+    const real six_r_omega_3_t_2 = v->six_r_c_5*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = v->six_r_c_5*six_r_omega_2_in_axes3_y +
         six_r_omega_3_t;
     const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
-        v->six_r_J_5_t*six_r_omega_2_in_axes3_y;
+        six_r_omega_2_in_axes3_y*v->six_r_s_5;
     /* (six_r-W_3) centripetal tensor of link 3 */
     const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
     const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
@@ -2955,10 +2940,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
     /* (six_r-omega_4) angular velocity of link 4 */
     const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
-    const real six_r_omega_4_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z +
+    const real six_r_omega_4_in_axes5_x = v->six_r_c_5*six_r_omega_4_in_axes4_z +
         six_r_omega_3_t;
     const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
-        v->six_r_J_5_t*six_r_omega_4_in_axes4_z;
+        six_r_omega_4_in_axes4_z*v->six_r_s_5;
     /* (six_r-W_4) centripetal tensor of link 4 */
     const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
     const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
@@ -2988,31 +2973,31 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->six_r_c_3*six_r_zeta_2_in_axes2_y;
     const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
         v->six_r_s_3*six_r_zeta_2_in_axes2_y;
-    const real six_r_zeta_2_t = v->six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_z = v->six_r_h_4_t*six_r_zeta_2_in_axes3_x;
-    const real six_r_zeta_2_in_axes5_x = v->six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
-        v->six_r_J_5_t*six_r_zeta_2_t;
-    const real six_r_zeta_2_in_axes5_y = -v->six_r_J_5_t*six_r_zeta_2_in_axes3_y -
-        v->six_r_e_4_in_axes5_x*six_r_zeta_2_t;
+    const real six_r_zeta_2_t = v->six_r_c_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v->six_r_s_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v->six_r_c_5*six_r_zeta_2_in_axes3_y -
+        v->six_r_s_5*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v->six_r_s_5*six_r_zeta_2_in_axes3_y -
+        v->six_r_c_5*six_r_zeta_2_t;
     /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
     const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12;
     const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12;
     /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
     const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
     const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_h_4_t;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_c_4;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_s_4;
     /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
     const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
     const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
     /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
     const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
     const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
-    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_e_4_in_axes5_x;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_c_5;
     const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-        v->six_r_J_5_t*six_r_beta_4_in_axes4_x;
-    const real six_r_beta_4_t_2 = v->six_r_J_5_t*six_r_beta_3_in_axes3_y;
-    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
+        six_r_beta_4_in_axes4_x*v->six_r_s_5;
+    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v->six_r_s_5;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_c_5 -
         six_r_beta_4_t_2;
     /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
     const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
@@ -3059,10 +3044,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         v->six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14) +
         v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
         v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_e_4_in_axes5_x +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_c_5 +
         six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) -
         v->six_r_bias_t_16*(six_r_beta_4_t + six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y
-        - v->six_r_J_5_t*six_r_beta_3_t) +
+        - six_r_beta_3_t*v->six_r_s_5) +
         v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
         six_r_beta_4_in_axes5_y) -
         v->six_r_bias_t_17*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y +
@@ -3149,10 +3134,9 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
     /* (six_r-alpha_4_o) remainder of: angular acceleration of link 4 */
     const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-        six_r_alpha_3_o_in_axes3_z*v->six_r_h_4_t -
-        six_r_alpha_3_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v->six_r_e_2_in_axes5_z
-        - six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v->six_r_h_4_t;
+        six_r_alpha_3_o_in_axes3_z*v->six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v->six_r_c_4;
+    const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_z*v->six_r_c_4 -
+        six_r_zeta_4_t + six_r_alpha_3_o_in_axes3_x*v->six_r_s_4;
     const real six_r_alpha_4_o_in_axes4_z = six_r_qdd_4_o + six_r_alpha_3_o_in_axes3_y;
     /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
     const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
@@ -3163,10 +3147,9 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
     /* (six_r-alpha_5_o) remainder of: angular acceleration of link 5 */
     const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-        v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-        six_r_alpha_4_o_in_axes4_z*v->six_r_e_4_in_axes5_x;
-    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v->six_r_e_4_in_axes5_x
-        - six_r_zeta_5_t - v->six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
+        six_r_alpha_4_o_in_axes4_x*v->six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v->six_r_c_5;
+    const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v->six_r_c_5 -
+        six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v->six_r_s_5;
     const real six_r_alpha_5_o_in_axes5_z =
         v->inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*v->six_r_w_1_t_10 +
         six_r_rel_o_in_axes5_y*v->six_r_w_1_t_9 + six_r_qdd_1_o_t_3*v->six_r_w_1_t_21 -
@@ -3216,10 +3199,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         six_r_acc_3_o_in_axes3_z*m->six_r_link3_mass[i] -
         six_r_B_3_o_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_x - six_r_a_o_4_o_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_y + six_r_a_o_4_o_in_axes3_z*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v->six_r_s_4 -
+        v->six_r_g_in_axes4_x - six_r_a_o_4_o_in_axes3_x*v->six_r_c_4;
+    const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v->six_r_s_4 -
+        v->six_r_g_in_axes4_y + six_r_a_o_4_o_in_axes3_z*v->six_r_c_4;
     const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v->six_r_g_in_axes3_y;
     /* (six_r-f_4_o) remainder of: inertia force of link 4 less its weight */
     const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
@@ -3236,10 +3219,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
         m->six_r_h_4_in_spec4_x[i]*(six_r_bias_t + six_r_f_4_o_t) +
         six_r_B_4_o_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
         six_r_B_4_o_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v->six_r_h_4_t -
-        v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
-    const real six_r_f_4_o_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
-        six_r_f_4_o_in_axes4_x*v->six_r_h_4_t;
+    const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v->six_r_s_4 -
+        v->six_r_c_4*six_r_f_4_o_in_axes4_x;
+    const real six_r_f_4_o_in_axes3_z = v->six_r_c_4*six_r_f_4_o_in_axes4_y +
+        six_r_f_4_o_in_axes4_x*v->six_r_s_4;
     /* (six_r-acc_5_o) remainder of: acceleration of the reference point of link 5, less gravity */
     const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x - v->six_r_g_in_axes5_x;
     const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y - v->six_r_g_in_axes5_y;
@@ -3294,11 +3277,10 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
     /* (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the
        connection point left out */
     const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
-        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-        v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+        v->six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v->six_r_s_5;
     const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
-    const real six_r_N_4_o_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-        v->six_r_J_5_t*six_r_mu_5_o_in_axes5_y + six_r_mu_4_o_in_axes4_z;
+    const real six_r_N_4_o_in_axes4_z = v->six_r_c_5*six_r_mu_5_o_in_axes5_x -
+        six_r_mu_5_o_in_axes5_y*v->six_r_s_5 + six_r_mu_4_o_in_axes4_z;
     /* (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their
        reference points */
     const real six_r_mu_3_o_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_o_t -
@@ -3327,13 +3309,11 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
        connection point left out */
     const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
         six_r_f_4_o_in_axes3_z*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v->six_r_h_4_t -
-        six_r_N_4_o_in_axes4_x*v->six_r_e_2_in_axes5_z;
+        six_r_N_4_o_in_axes4_y*v->six_r_s_4 - six_r_N_4_o_in_axes4_x*v->six_r_c_4;
     const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_z;
     const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z -
         six_r_f_4_o_in_axes3_x*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_o_in_axes4_y*v->six_r_e_2_in_axes5_z +
-        six_r_N_4_o_in_axes4_x*v->six_r_h_4_t;
+        six_r_N_4_o_in_axes4_y*v->six_r_c_4 + six_r_N_4_o_in_axes4_x*v->six_r_s_4;
     /* (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
        */
     const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
@@ -3448,8 +3428,8 @@ INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t
 INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
 {
     /* (six_r-J_5) inertia tensor of link 5 about the connection point */
-    const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_4_in_axes5_x -
-        m->six_r_J_5_in_spec5_yz[i]*v->six_r_J_5_t;
+    const real six_r_J_5_in_axes4_yz = m->six_r_J_5_in_spec5_xz[i]*v->six_r_c_5 -
+        m->six_r_J_5_in_spec5_yz[i]*v->six_r_s_5;
     /* (six_r-w_1) force part of reciprocal wrench 1 */
     const real six_r_w_1_t_79 = v->inv_six_r_w_1_t_45*v->inv_six_r_w_1_t_63*v->six_r_w_1_t_51;
     const real six_r_w_1_t_80 = v->inv_six_r_w_1_t_75*(v->inv_six_r_w_1_t_45*v->six_r_w_1_t_57
@@ -3543,60 +3523,58 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_m1_w_5_t*v->six_r_n_m1_in_axes5_y;
     /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
     const real six_r_dalpha_alpha_5_in_axes5_xx = v->six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
-        - v->six_r_e_2_in_axes5_x*six_r_o_3_t - v->six_r_e_4_in_axes5_x*six_r_o_4_t -
+        - v->six_r_c_5*six_r_o_4_t - v->six_r_e_2_in_axes5_x*six_r_o_3_t -
         v->six_r_e_2_in_axes5_x*v->six_r_o_2_t;
-    const real six_r_dalpha_alpha_5_in_axes5_xy = v->six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
-        + v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
-        v->six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y +
+    const real six_r_dalpha_alpha_5_in_axes5_xy = v->six_r_c_5*six_r_o_4_in_axes5_y +
+        v->six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y +
+        v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
         v->six_r_e_2_in_axes5_x*v->six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_xz = v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
-        + v->six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v->six_r_e_1_in_axes5_x*six_r_o_1_t +
+    const real six_r_dalpha_alpha_5_in_axes5_xz = v->six_r_c_5*six_r_o_4_in_axes5_z +
+        v->six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z - v->six_r_e_1_in_axes5_x*six_r_o_1_t +
         v->six_r_e_2_in_axes5_x*v->six_r_o_2_in_axes5_z;
-    const real six_r_dalpha_alpha_5_in_axes5_yx = v->six_r_J_5_t*six_r_o_4_t +
-        v->six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v->six_r_e_2_in_axes5_y*six_r_o_3_t -
+    const real six_r_dalpha_alpha_5_in_axes5_yx = v->six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x
+        + six_r_o_4_t*v->six_r_s_5 - v->six_r_e_2_in_axes5_y*six_r_o_3_t -
         v->six_r_e_2_in_axes5_y*v->six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_yy = v->six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
-        + v->six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v->six_r_J_5_t*six_r_o_4_in_axes5_y +
+        + v->six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_o_4_in_axes5_y*v->six_r_s_5 +
         v->six_r_e_2_in_axes5_y*v->six_r_o_2_in_axes5_y;
     const real six_r_dalpha_alpha_5_in_axes5_yz = v->six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
-        - v->six_r_J_5_t*six_r_o_4_in_axes5_z - v->six_r_e_1_in_axes5_y*six_r_o_1_t +
+        - v->six_r_e_1_in_axes5_y*six_r_o_1_t - six_r_o_4_in_axes5_z*v->six_r_s_5 +
         v->six_r_e_2_in_axes5_y*v->six_r_o_2_in_axes5_z;
     const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-        v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v->six_r_e_2_in_axes5_z*six_r_o_3_t -
-        v->six_r_e_2_in_axes5_z*v->six_r_o_2_t;
+        v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v->six_r_c_4*six_r_o_3_t -
+        v->six_r_c_4*v->six_r_o_2_t;
     const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-        v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-        v->six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y +
-        v->six_r_e_2_in_axes5_z*v->six_r_o_2_in_axes5_y;
-    const real six_r_dalpha_alpha_5_in_axes5_zz = v->six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
-        - six_r_o_5_t - v->six_r_e_1_in_axes5_z*six_r_o_1_t +
-        v->six_r_e_2_in_axes5_z*v->six_r_o_2_in_axes5_z;
+        v->six_r_c_4*six_r_o_3_in_axes5_y + v->six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+        v->six_r_c_4*v->six_r_o_2_in_axes5_y;
+    const real six_r_dalpha_alpha_5_in_axes5_zz = v->six_r_c_4*six_r_o_3_in_axes5_z -
+        six_r_o_5_t - v->six_r_e_1_in_axes5_z*six_r_o_1_t +
+        v->six_r_c_4*v->six_r_o_2_in_axes5_z;
     /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-    const real six_r_d_alpha_5_in_axes5_xz = v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+    const real six_r_d_alpha_5_in_axes5_xz = v->six_r_c_5*six_r_w_4_in_axes5_z +
+        v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
         v->six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
-        v->six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z +
         v->six_r_e_2_in_axes5_x*v->six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_yz = v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v->six_r_J_5_t*six_r_w_4_in_axes5_z +
+        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v->six_r_s_5*six_r_w_4_in_axes5_z +
         v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_z;
     const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v->six_r_e_2_in_axes5_z*six_r_w_3_t +
-        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_y;
+        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - v->six_r_c_4*six_r_w_3_t +
+        v->six_r_c_4*v->six_r_w_2_in_axes5_y;
     const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-        v->six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z +
-        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_z;
+        v->six_r_c_4*six_r_w_3_in_axes5_z + v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+        v->six_r_c_4*v->six_r_w_2_in_axes5_z;
     /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
        about its reference point */
     const real six_r_d_phi_5_in_axes5_xx =
         m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v->six_r_J_5_t*six_r_w_4_in_axes5_x +
+        v->six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v->six_r_s_5*six_r_w_4_in_axes5_x +
         v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_x) -
-        m->six_r_h_5_in_spec5_y[i]*(v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-        v->six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5 +
-        v->six_r_e_2_in_axes5_z*v->six_r_w_2_in_axes5_x);
+        m->six_r_h_5_in_spec5_y[i]*(v->six_r_c_4*six_r_w_3_in_axes5_x +
+        v->six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x - six_r_w_5_t_5 +
+        v->six_r_c_4*v->six_r_w_2_in_axes5_x);
     /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
-    const real six_r_D_3_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_e_2_in_axes5_z +
+    const real six_r_D_3_5 = m->six_r_J_5_in_spec5_zz[i]*v->six_r_c_4 +
         m->six_r_J_5_in_spec5_xz[i]*v->six_r_e_2_in_axes5_x +
         m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_2_in_axes5_y;
     /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
@@ -3605,27 +3583,24 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_1_in_axes5_y;
     /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
        about the connection point */
-    const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*v->six_r_J_5_t;
-    const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*v->six_r_e_4_in_axes5_x;
-    const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*v->six_r_J_5_t + six_r_Jc_4_t_2;
-    const real six_r_Jc_4_t_4 = m->six_r_J_5_in_spec5_yy[i]*v->six_r_e_4_in_axes5_x +
-        six_r_Jc_4_t;
+    const real six_r_Jc_4_t = m->six_r_J_5_in_spec5_xy[i]*v->six_r_s_5;
+    const real six_r_Jc_4_t_2 = m->six_r_J_5_in_spec5_xy[i]*v->six_r_c_5;
+    const real six_r_Jc_4_t_3 = m->six_r_J_5_in_spec5_xx[i]*v->six_r_s_5 + six_r_Jc_4_t_2;
+    const real six_r_Jc_4_t_4 = m->six_r_J_5_in_spec5_yy[i]*v->six_r_c_5 + six_r_Jc_4_t;
     const real six_r_Jc_4_in_axes4_xx = m->six_r_J_4_in_spec4_yy[i] +
-        v->six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*v->six_r_e_4_in_axes5_x;
+        six_r_Jc_4_t_3*v->six_r_s_5 + six_r_Jc_4_t_4*v->six_r_c_5;
     const real six_r_Jc_4_in_axes4_xy = m->six_r_J_4_in_spec4_yz[i] +
-        m->six_r_J_5_in_spec5_xz[i]*v->six_r_J_5_t +
-        m->six_r_J_5_in_spec5_yz[i]*v->six_r_e_4_in_axes5_x;
+        m->six_r_J_5_in_spec5_xz[i]*v->six_r_s_5 + m->six_r_J_5_in_spec5_yz[i]*v->six_r_c_5;
     const real six_r_Jc_4_in_axes4_xz = m->six_r_J_4_in_spec4_xy[i] +
-        six_r_Jc_4_t_3*v->six_r_e_4_in_axes5_x - v->six_r_J_5_t*six_r_Jc_4_t_4;
+        six_r_Jc_4_t_3*v->six_r_c_5 - six_r_Jc_4_t_4*v->six_r_s_5;
     const real six_r_Jc_4_in_axes4_yz = m->six_r_J_4_in_spec4_xz[i] + six_r_J_5_in_axes4_yz;
     const real six_r_Jc_4_in_axes4_zz = m->six_r_J_4_in_spec4_xx[i] +
-        v->six_r_e_4_in_axes5_x*(m->six_r_J_5_in_spec5_xx[i]*v->six_r_e_4_in_axes5_x -
-        six_r_Jc_4_t) - v->six_r_J_5_t*(six_r_Jc_4_t_2 -
-        m->six_r_J_5_in_spec5_yy[i]*v->six_r_J_5_t);
-    const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_h_4_t -
-        six_r_Jc_4_in_axes4_xz*v->six_r_e_2_in_axes5_z;
-    const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z +
-        six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t;
+        v->six_r_c_5*(m->six_r_J_5_in_spec5_xx[i]*v->six_r_c_5 - six_r_Jc_4_t) -
+        v->six_r_s_5*(six_r_Jc_4_t_2 - m->six_r_J_5_in_spec5_yy[i]*v->six_r_s_5);
+    const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_s_4 -
+        six_r_Jc_4_in_axes4_xz*v->six_r_c_4;
+    const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_yz*v->six_r_c_4 +
+        six_r_Jc_4_in_axes4_xz*v->six_r_s_4;
     /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
     const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*m->six_r_joint4_offset_x[i];
     const real six_r_L_c_4_3_t_2 = -v->six_r_h_4_in_spec2_z*m->six_r_joint4_offset_x[i];
@@ -3646,24 +3621,23 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_hc_3_in_axes3_x*v->six_r_s_3;
     /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
        about the connection point */
-    const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*v->six_r_h_4_t;
-    const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t;
-    const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_e_2_in_axes5_z;
-    const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_h_4_t;
+    const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*v->six_r_s_4;
+    const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_c_4 - six_r_Jc_3_t;
+    const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_c_4;
+    const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_s_4;
     const real six_r_Jc_3_in_axes3_xx = m->six_r_J_3_in_spec3_yy[i] + m->six_r_Jc_3_t_3[i] -
-        six_r_Jc_3_t_6*v->six_r_h_4_t + six_r_Jc_3_t_4*v->six_r_e_2_in_axes5_z;
+        six_r_Jc_3_t_6*v->six_r_s_4 + six_r_Jc_3_t_4*v->six_r_c_4;
     const real six_r_Jc_3_in_axes3_xy = six_r_L_c_4_3_t - m->six_r_J_3_in_spec3_xy[i] +
         six_r_Jc_4_in_axes3_xy;
     const real six_r_Jc_3_in_axes3_xz = -m->six_r_J_3_in_spec3_yz[i] -
-        six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t_4*v->six_r_h_4_t;
+        six_r_Jc_3_t_6*v->six_r_c_4 - six_r_Jc_3_t_4*v->six_r_s_4;
     const real six_r_Jc_3_in_axes3_yy = m->six_r_J_3_in_spec3_xx[i] + m->six_r_Jc_3_t_3[i] -
         2*m->six_r_Jc_3_t_2[i] + six_r_Jc_4_in_axes4_zz;
     const real six_r_Jc_3_in_axes3_yz = m->six_r_J_3_in_spec3_xz[i] + six_r_L_c_4_3_t_2 +
         six_r_Jc_4_in_axes3_yz;
     const real six_r_Jc_3_in_axes3_zz = m->six_r_J_3_in_spec3_zz[i] + m->six_r_Jc_3_t_3[i] +
-        v->six_r_e_2_in_axes5_z*(m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_e_2_in_axes5_z +
-        six_r_Jc_3_t) + v->six_r_h_4_t*(six_r_Jc_3_t_5 +
-        six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
+        v->six_r_c_4*(m->six_r_Jc_4_in_axes4_yy[i]*v->six_r_c_4 + six_r_Jc_3_t) +
+        v->six_r_s_4*(six_r_Jc_3_t_5 + six_r_Jc_4_in_axes4_xx*v->six_r_s_4);
     const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_yz*v->six_r_s_3 -
         six_r_Jc_3_in_axes3_xz*v->six_r_c_3;
     const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*v->six_r_s_3 +
@@ -3767,12 +3741,12 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_d_Gamma_4_t_2*v->six_r_w_1_t_21 + six_r_d_Gamma_4_t_3*v->six_r_w_1_t_40 -
         six_r_d_Gamma_4_t_4*v->six_r_w_1_t_57 - six_r_d_Gamma_4_t_5*v->six_r_w_1_t_69);
     const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_4*v->six_r_w_1_t_46 -
-        v->six_r_J_5_t*m->six_r_h_5_in_spec5_z[i] + six_r_d_Gamma_4_t_5*v->six_r_w_1_t_64 +
+        m->six_r_h_5_in_spec5_z[i]*v->six_r_s_5 + six_r_d_Gamma_4_t_5*v->six_r_w_1_t_64 +
         six_r_d_Gamma_4_t_6*v->six_r_w_1_t_76;
     const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t_2*v->six_r_w_1_t_9 -
-        v->six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        six_r_d_Gamma_4_t_3*v->six_r_w_1_t_25 - six_r_d_Gamma_4_t_4*v->six_r_w_1_t_47 -
-        six_r_d_Gamma_4_t_5*v->six_r_w_1_t_65 - six_r_d_Gamma_4_t_6*v->six_r_w_1_t_77;
+        v->six_r_c_5*m->six_r_h_5_in_spec5_z[i] - six_r_d_Gamma_4_t_3*v->six_r_w_1_t_25 -
+        six_r_d_Gamma_4_t_4*v->six_r_w_1_t_47 - six_r_d_Gamma_4_t_5*v->six_r_w_1_t_65 -
+        six_r_d_Gamma_4_t_6*v->six_r_w_1_t_77;
     const real six_r_d_Gamma_4_in_axes5_z = v->six_r_d_Gamma_4_t +
         six_r_d_Gamma_4_t_3*v->six_r_w_1_t_26 + six_r_d_Gamma_4_t_4*v->six_r_w_1_t_48 +
         six_r_d_Gamma_4_t_5*v->six_r_w_1_t_66 + six_r_d_Gamma_4_t_6*v->six_r_w_1_t_78;
@@ -3794,9 +3768,9 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
     /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real six_r_d_Gamma_3_t = v->six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_z[i] -
-        v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_y[i];
+        v->six_r_c_4*m->six_r_h_5_in_spec5_y[i];
     const real six_r_d_Gamma_3_t_2 = v->six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_z[i] -
-        v->six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_x[i];
+        v->six_r_c_4*m->six_r_h_5_in_spec5_x[i];
     const real six_r_d_Gamma_3_t_3 = v->six_r_e_2_in_axes5_x*m->six_r_h_5_in_spec5_y[i] -
         v->six_r_e_2_in_axes5_y*m->six_r_h_5_in_spec5_x[i];
     const real six_r_d_Gamma_3_t_4 = v->inv_six_r_w_1_t_8*six_r_D_3_5;
@@ -4086,7 +4060,7 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_d_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_x +
         six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_y[i] -
         m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y -
-        v->six_r_J_5_t*six_r_w_4_in_axes5_y - v->six_r_e_2_in_axes5_y*six_r_w_3_t +
+        v->six_r_e_2_in_axes5_y*six_r_w_3_t - v->six_r_s_5*six_r_w_4_in_axes5_y +
         v->six_r_e_2_in_axes5_y*v->six_r_w_2_in_axes5_y);
     const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 -
         six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
@@ -4100,8 +4074,8 @@ INLINE void stage_six_r_M_dynamics(const prepared *m, size_t i, values_six_r *v)
         six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
         six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
         six_r_d_Gamma_2_in_axes5_y*v->six_r_w_2_in_axes5_y +
-        m->six_r_h_5_in_spec5_z[i]*(v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-        v->six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v->six_r_e_2_in_axes5_x*six_r_w_3_t +
+        m->six_r_h_5_in_spec5_z[i]*(v->six_r_c_5*six_r_w_4_in_axes5_y +
+        v->six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y - v->six_r_e_2_in_axes5_x*six_r_w_3_t +
         v->six_r_e_2_in_axes5_x*v->six_r_w_2_in_axes5_y) -
         six_r_d_alpha_5_in_axes5_zy*m->six_r_h_5_in_spec5_x[i];
     const real six_r_d_c_in_axes5_yz = six_r_d_Gamma_3_in_axes5_z*six_r_w_3_t -
@@ -4299,11 +4273,9 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x;
     /* (six_r-alpha_4) angular acceleration of link 4 */
     const real six_r_alpha_4_in_axes4_x = v->six_r_zeta_4_in_axes4_x_2 +
-        six_r_alpha_3_in_axes3_z*v->six_r_h_4_t -
-        six_r_alpha_3_in_axes3_x*v->six_r_e_2_in_axes5_z;
+        six_r_alpha_3_in_axes3_z*v->six_r_s_4 - six_r_alpha_3_in_axes3_x*v->six_r_c_4;
     const real six_r_alpha_4_in_axes4_y = v->six_r_zeta_4_in_axes4_y +
-        six_r_alpha_3_in_axes3_z*v->six_r_e_2_in_axes5_z +
-        six_r_alpha_3_in_axes3_x*v->six_r_h_4_t;
+        six_r_alpha_3_in_axes3_z*v->six_r_c_4 + six_r_alpha_3_in_axes3_x*v->six_r_s_4;
     const real six_r_alpha_4_in_axes4_z = v->six_r_qdd_4 + six_r_alpha_3_in_axes3_y;
     /* (six_r-B_4) acceleration tensor of link 4 */
     const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy_2 - six_r_alpha_4_in_axes4_z;
@@ -4314,10 +4286,9 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x;
     /* (six_r-alpha_5) angular acceleration of link 5 */
     const real six_r_alpha_5_in_axes5_x = v->six_r_zeta_5_in_axes5_x_2 +
-        v->six_r_J_5_t*six_r_alpha_4_in_axes4_x +
-        six_r_alpha_4_in_axes4_z*v->six_r_e_4_in_axes5_x;
-    const real six_r_alpha_5_in_axes5_y = six_r_alpha_4_in_axes4_x*v->six_r_e_4_in_axes5_x -
-        v->six_r_zeta_5_t_2 - v->six_r_J_5_t*six_r_alpha_4_in_axes4_z;
+        six_r_alpha_4_in_axes4_x*v->six_r_s_5 + six_r_alpha_4_in_axes4_z*v->six_r_c_5;
+    const real six_r_alpha_5_in_axes5_y = six_r_alpha_4_in_axes4_x*v->six_r_c_5 -
+        v->six_r_zeta_5_t_2 - six_r_alpha_4_in_axes4_z*v->six_r_s_5;
     const real six_r_alpha_5_in_axes5_z = v->six_r_qdd_5 + six_r_alpha_4_in_axes4_y;
     /* (six_r-B_5) acceleration tensor of link 5 */
     const real six_r_B_5_in_axes5_xy = v->six_r_W_4_in_axes5_xy_2 - six_r_alpha_5_in_axes5_z;
@@ -4363,10 +4334,10 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         six_r_acc_3_in_axes3_z*m->six_r_link3_mass[i] -
         six_r_B_3_in_axes3_zx*m->six_r_h_3_in_spec3_y[i];
     /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-    const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*v->six_r_e_2_in_axes5_z;
-    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_h_4_t -
-        v->six_r_g_in_axes4_y + six_r_a_o_4_in_axes3_z*v->six_r_e_2_in_axes5_z;
+    const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_s_4 -
+        v->six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*v->six_r_c_4;
+    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 -
+        v->six_r_g_in_axes4_y + six_r_a_o_4_in_axes3_z*v->six_r_c_4;
     const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - v->six_r_g_in_axes3_y;
     /* (six_r-f_4) inertia force of link 4 less its weight */
     const real six_r_f_4_t = v->six_r_omega_3_in_axes4_x_2*v->six_r_omega_3_in_axes4_x_2;
@@ -4383,10 +4354,10 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
         m->six_r_h_4_in_spec4_x[i]*(v->six_r_bias_t_19 + six_r_f_4_t) +
         six_r_B_4_in_axes4_zx*m->six_r_h_4_in_spec4_y[i] +
         six_r_B_4_in_axes4_zy*m->six_r_h_4_in_spec4_z[i];
-    const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_h_4_t -
-        v->six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x;
-    const real six_r_f_4_in_axes3_z = v->six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y +
-        six_r_f_4_in_axes4_x*v->six_r_h_4_t;
+    const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_s_4 -
+        v->six_r_c_4*six_r_f_4_in_axes4_x;
+    const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
+        six_r_f_4_in_axes4_x*v->six_r_s_4;
     /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
     v->six_r_acc_5_in_axes5_x = v->six_r_S_ddot_in_axes5_x - v->six_r_g_in_axes5_x;
     v->six_r_acc_5_in_axes5_y = v->six_r_S_ddot_in_axes5_y - v->six_r_g_in_axes5_y;
@@ -4438,10 +4409,10 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
        point left out */
     const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
-        v->six_r_J_5_t*six_r_mu_5_in_axes5_x + v->six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y;
+        v->six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*v->six_r_s_5;
     const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z;
-    const real six_r_N_4_in_axes4_z = v->six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
-        v->six_r_J_5_t*six_r_mu_5_in_axes5_y + six_r_mu_4_in_axes4_z;
+    const real six_r_N_4_in_axes4_z = v->six_r_c_5*six_r_mu_5_in_axes5_x -
+        six_r_mu_5_in_axes5_y*v->six_r_s_5 + six_r_mu_4_in_axes4_z;
     /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real six_r_mu_3_in_axes3_x = m->six_r_J_3_in_spec3_xz[i]*(six_r_f_3_t -
         six_r_W_3_t_5) - six_r_B_3_in_axes3_yx*m->six_r_J_3_in_spec3_yz[i] -
@@ -4467,12 +4438,12 @@ INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r 
     /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
        point left out */
     const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
-        six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_h_4_t
-        - six_r_N_4_in_axes4_x*v->six_r_e_2_in_axes5_z;
+        six_r_f_4_in_axes3_z*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_s_4 -
+        six_r_N_4_in_axes4_x*v->six_r_c_4;
     const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_z;
     const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z -
-        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i] +
-        six_r_N_4_in_axes4_y*v->six_r_e_2_in_axes5_z + six_r_N_4_in_axes4_x*v->six_r_h_4_t;
+        six_r_f_4_in_axes3_x*m->six_r_joint4_offset_x[i] + six_r_N_4_in_axes4_y*v->six_r_c_4 +
+        six_r_N_4_in_axes4_x*v->six_r_s_4;
     /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
     const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
     const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
@@ -4754,14 +4725,14 @@ INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t i, size
         v.six_r_c_3*six_r_residual_t_7;
     const real six_r_residual_t_9 = v.six_r_c_3*six_r_residual_t_6 +
         six_r_residual_t_7*v.six_r_s_3;
-    const real six_r_residual_t_10 = v.six_r_h_4_t*six_r_residual_t_5 -
-        v.six_r_e_2_in_axes5_z*six_r_residual_t_8;
-    const real six_r_residual_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_residual_t_9 +
-        v.six_r_J_5_t*six_r_residual_t_10 - v.six_r_r_1_in_axes5_x;
-    const real six_r_residual_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_residual_t_10 -
-        v.six_r_J_5_t*six_r_residual_t_9 - v.six_r_r_1_in_axes5_y;
-    const real six_r_residual_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_residual_t_5 +
-        v.six_r_h_4_t*six_r_residual_t_8 - v.six_r_r_1_in_axes5_z;
+    const real six_r_residual_t_10 = six_r_residual_t_5*v.six_r_s_4 -
+        v.six_r_c_4*six_r_residual_t_8;
+    const real six_r_residual_in_axes5_x = v.six_r_c_5*six_r_residual_t_9 +
+        six_r_residual_t_10*v.six_r_s_5 - v.six_r_r_1_in_axes5_x;
+    const real six_r_residual_in_axes5_y = v.six_r_c_5*six_r_residual_t_10 -
+        six_r_residual_t_9*v.six_r_s_5 - v.six_r_r_1_in_axes5_y;
+    const real six_r_residual_in_axes5_z = v.six_r_c_4*six_r_residual_t_5 +
+        six_r_residual_t_8*v.six_r_s_4 - v.six_r_r_1_in_axes5_z;
     /* (six_r-residual) */
     o[0*count + k] = six_r_residual_in_axes5_x;
     o[1*count + k] = six_r_residual_in_axes5_y;
@@ -6008,10 +5979,10 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
     const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_4 -
         m->six_r_potential_t_3[i]*v.six_r_s_2;
     const real six_r_potential_t_5 = six_r_b_in_spec2_y - v.six_r_bias_t_3;
-    const real six_r_potential_t_6 = v.six_r_e_4_in_axes5_x*m->six_r_h_5_in_spec5_x[i] -
-        v.six_r_J_5_t*m->six_r_h_5_in_spec5_y[i];
-    const real six_r_potential_t_7 = v.six_r_d_Gamma_4_t*v.six_r_e_2_in_axes5_z -
-        v.six_r_h_4_t*m->six_r_h_5_in_spec5_z[i];
+    const real six_r_potential_t_6 = v.six_r_c_5*m->six_r_h_5_in_spec5_x[i] -
+        m->six_r_h_5_in_spec5_y[i]*v.six_r_s_5;
+    const real six_r_potential_t_7 = v.six_r_c_4*v.six_r_d_Gamma_4_t -
+        m->six_r_h_5_in_spec5_z[i]*v.six_r_s_4;
     const real six_r_potential_t_8 = m->six_r_h_2_in_spec2_x[i] +
         v.six_r_c_2*m->six_r_h_1_in_spec1_x[i] + v.six_r_c_3*m->six_r_h_3_in_spec3_x[i] +
         v.six_r_c_3*m->six_r_h_4_in_spec4_x[i] + m->six_r_h_1_in_spec1_y[i]*v.six_r_s_2 -
@@ -6033,10 +6004,10 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t i, size_t j
         m->six_r_link4_mass[i]*(m->six_r_joint4_offset_x[i]*v.six_r_s_3 - v.six_r_bias_t_3 +
         six_r_b_in_spec2_y);
     const real six_r_potential_t_10 = m->six_r_h_1_in_spec1_z[i] + m->six_r_h_2_in_spec2_z[i]
-        + m->six_r_h_3_in_spec3_z[i] + v.six_r_e_2_in_axes5_z*m->six_r_h_5_in_spec5_z[i] +
+        + m->six_r_h_3_in_spec3_z[i] + v.six_r_c_4*m->six_r_h_5_in_spec5_z[i] +
         v.six_r_h_4_in_spec2_z + six_r_b_in_spec2_z*m->six_r_link1_mass[i] +
         six_r_b_in_spec2_z*m->six_r_link2_mass[i] + six_r_b_in_spec2_z*m->six_r_link3_mass[i]
-        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] + v.six_r_d_Gamma_4_t*v.six_r_h_4_t;
+        + six_r_b_in_spec2_z*m->six_r_link4_mass[i] + v.six_r_d_Gamma_4_t*v.six_r_s_4;
     const real six_r_potential_t_11 = v.six_r_g_in_axes1_y*six_r_potential_t_10 +
         v.six_r_g_in_axes2_x*six_r_potential_t_8 + v.six_r_g_in_axes2_y*six_r_potential_t_9;
     /* (potential) */

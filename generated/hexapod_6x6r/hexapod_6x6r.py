@@ -2485,21 +2485,6 @@ def _run_dynamics(m, X, V, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        six_r_h_4_in_spec2_z = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
-        )
-        six_r_h_4_in_spec3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
-        )
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
-        six_r_J_5_in_axes4_yz = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
-        )
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -2522,14 +2507,27 @@ def _run_dynamics(m, X, V, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_h_4_in_spec2_z = six_r_c_4*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_s_4
+        six_r_h_4_in_spec3_y = six_r_c_4*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_s_4
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_J_5_in_axes4_yz = six_r_J_5_in_spec5_xz*six_r_c_5 - six_r_J_5_in_spec5_yz*six_r_s_5
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -2542,9 +2540,9 @@ def _run_dynamics(m, X, V, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -2589,25 +2587,19 @@ def _run_dynamics(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -2615,10 +2607,10 @@ def _run_dynamics(m, X, V, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -2627,17 +2619,17 @@ def _run_dynamics(m, X, V, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -2648,31 +2640,30 @@ def _run_dynamics(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -2705,11 +2696,9 @@ def _run_dynamics(m, X, V, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -2717,7 +2706,7 @@ def _run_dynamics(m, X, V, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -2729,16 +2718,15 @@ def _run_dynamics(m, X, V, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -3107,7 +3095,7 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_13 - six_r_omega_1_t
         six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_13 - six_r_omega_1_t_2
-        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_13 - six_r_omega_1_t_3
+        six_r_omega_2_in_axes5_z = six_r_c_4*six_r_qd_1_t_13 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -3117,15 +3105,15 @@ def _run_dynamics(m, X, V, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13
         six_r_omega_3_in_axes4_x = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z + six_r_h_4_t*six_r_omega_2_in_axes3_x
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = six_r_J_5_t*six_r_omega_3_in_axes4_x
-        six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_2_in_axes3_y
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
@@ -3136,8 +3124,8 @@ def _run_dynamics(m, X, V, q):
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
@@ -3175,32 +3163,28 @@ def _run_dynamics(m, X, V, q):
         six_r_zeta_2_in_axes3_y = (
         six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y - six_r_J_5_t*six_r_zeta_2_t
-        )
-        six_r_zeta_2_in_axes5_y = (
-        -six_r_J_5_t*six_r_zeta_2_in_axes3_y - six_r_e_4_in_axes5_x*six_r_zeta_2_t
-        )
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12
         six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_e_2_in_axes5_z
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_h_4_t
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
         six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
         six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_J_5_t*six_r_beta_4_in_axes4_x
-        six_r_beta_4_t_2 = six_r_J_5_t*six_r_beta_3_in_axes3_y
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_beta_4_t_2
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5
@@ -3214,26 +3198,26 @@ def _run_dynamics(m, X, V, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
-        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
         six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t
         six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2
         six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
-        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
         six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
         six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
         six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
         six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
@@ -3262,12 +3246,12 @@ def _run_dynamics(m, X, V, q):
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_e_4_in_axes5_x +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
             six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
             six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
             six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_J_5_t*six_r_beta_3_t) -
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
             six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
             six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
@@ -3367,11 +3351,11 @@ def _run_dynamics(m, X, V, q):
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
         # (six_r-alpha_4_o) remainder of: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_o_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_o_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_o_in_axes4_y = (
-        six_r_alpha_3_o_in_axes3_x*six_r_h_4_t + six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z -
+        six_r_alpha_3_o_in_axes3_x*six_r_s_4 + six_r_alpha_3_o_in_axes3_z*six_r_c_4 -
             six_r_zeta_4_t
         )
         six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o
@@ -3384,66 +3368,66 @@ def _run_dynamics(m, X, V, q):
         six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x
         # (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_dalpha_alpha_5_in_axes5_xx = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_x*six_r_o_2_t -
-            six_r_e_2_in_axes5_x*six_r_o_3_t - six_r_e_4_in_axes5_x*six_r_o_4_t
+        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x - six_r_c_5*six_r_o_4_t -
+            six_r_e_2_in_axes5_x*six_r_o_2_t - six_r_e_2_in_axes5_x*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_xy = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y
+        six_r_c_5*six_r_o_4_in_axes5_y + six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y +
+            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_xz = (
-        six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-            six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
+        six_r_c_5*six_r_o_4_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z +
+            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_yx = (
-        six_r_J_5_t*six_r_o_4_t + six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
+        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x + six_r_o_4_t*six_r_s_5 -
             six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_yy = (
         six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_J_5_t*six_r_o_4_in_axes5_y
+            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_o_4_in_axes5_y*six_r_s_5
         )
         six_r_dalpha_alpha_5_in_axes5_yz = (
         six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z -
-            six_r_J_5_t*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_y*six_r_o_1_t
+            six_r_e_1_in_axes5_y*six_r_o_1_t - six_r_o_4_in_axes5_z*six_r_s_5
         )
         six_r_dalpha_alpha_5_in_axes5_zx = (
-        six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_z*six_r_o_2_t - six_r_e_2_in_axes5_z*six_r_o_3_t
+        six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - six_r_c_4*six_r_o_2_t -
+            six_r_c_4*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_zy = (
-        six_r_o_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y
+        six_r_o_5_in_axes5_y + six_r_c_4*six_r_o_2_in_axes5_y + six_r_c_4*six_r_o_3_in_axes5_y +
+            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_zz = (
-        six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z -
-            six_r_o_5_t - six_r_e_1_in_axes5_z*six_r_o_1_t
+        six_r_c_4*six_r_o_2_in_axes5_z + six_r_c_4*six_r_o_3_in_axes5_z - six_r_o_5_t -
+            six_r_e_1_in_axes5_z*six_r_o_1_t
         )
         # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_d_alpha_5_in_axes5_xz = (
-        six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z
+        six_r_c_5*six_r_w_4_in_axes5_z + six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_yz = (
         six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_J_5_t*six_r_w_4_in_axes5_z
+            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_s_5*six_r_w_4_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_zy = (
-        six_r_w_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - six_r_e_2_in_axes5_z*six_r_w_3_t
+        six_r_w_5_in_axes5_y + six_r_c_4*six_r_w_2_in_axes5_y +
+            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - six_r_c_4*six_r_w_3_t
         )
         six_r_d_alpha_5_in_axes5_zz = (
-        six_r_w_5_in_axes5_z + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z
+        six_r_w_5_in_axes5_z + six_r_c_4*six_r_w_2_in_axes5_z + six_r_c_4*six_r_w_3_in_axes5_z +
+            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z
         )
         # (six_r-alpha_5_o) remainder of: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x + six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-            six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x
+        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_x*six_r_s_5 +
+            six_r_alpha_4_o_in_axes4_z*six_r_c_5
         )
         six_r_alpha_5_o_in_axes5_y = (
-        six_r_alpha_4_o_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t -
-            six_r_J_5_t*six_r_alpha_4_o_in_axes4_z
+        six_r_alpha_4_o_in_axes4_x*six_r_c_5 - six_r_zeta_5_t -
+            six_r_alpha_4_o_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_o_in_axes5_z = (
         six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*six_r_w_1_t_10 +
@@ -3507,19 +3491,15 @@ def _run_dynamics(m, X, V, q):
             six_r_f_3_o_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
-        six_r_g_in_axes4_x = (
-        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
-        )
-        six_r_g_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
-        )
+        six_r_g_in_axes4_x = six_r_g_in_axes1_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_x
+        six_r_g_in_axes4_y = six_r_c_4*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_s_4
         # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
-            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_a_o_4_o_in_axes3_z*six_r_s_4 - six_r_g_in_axes4_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_c_4
         )
         six_r_acc_4_o_in_axes4_y = (
-        six_r_a_o_4_o_in_axes3_x*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
+        six_r_a_o_4_o_in_axes3_x*six_r_s_4 + six_r_a_o_4_o_in_axes3_z*six_r_c_4 -
             six_r_g_in_axes4_y
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
@@ -3545,10 +3525,10 @@ def _run_dynamics(m, X, V, q):
             six_r_f_4_o_t)
         )
         six_r_f_4_o_in_axes3_x = (
-        six_r_f_4_o_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x
+        six_r_f_4_o_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_o_in_axes4_x
         )
         six_r_f_4_o_in_axes3_z = (
-        six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
+        six_r_c_4*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_s_4
         )
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_g_in_axes5_x = (
@@ -3571,15 +3551,14 @@ def _run_dynamics(m, X, V, q):
         six_r_d_phi_5_in_axes5_xx = (
         six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            - six_r_J_5_t*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
-            - six_r_w_5_t_5)
+            - six_r_s_5*six_r_w_4_in_axes5_x) -
+            six_r_h_5_in_spec5_y*(six_r_c_4*six_r_w_2_in_axes5_x + six_r_c_4*six_r_w_3_in_axes5_x
+            + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x - six_r_w_5_t_5)
         )
         # (six_r-D_3_5) inertia of joint 5 along joint 3
         six_r_D_3_5 = (
         six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x + six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_2_in_axes5_z
+            six_r_J_5_in_spec5_zz*six_r_c_4
         )
         # (six_r-D_1_5) inertia of joint 5 along joint 1
         six_r_D_1_5 = (
@@ -3587,30 +3566,29 @@ def _run_dynamics(m, X, V, q):
             six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z
         )
         # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
-        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t
-        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
-        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t
-        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_s_5
+        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_c_5
+        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_s_5
+        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_c_5
         six_r_Jc_4_in_axes4_xx = (
-        six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        six_r_J_4_in_spec4_yy + six_r_Jc_4_t_3*six_r_s_5 + six_r_Jc_4_t_4*six_r_c_5
         )
         six_r_Jc_4_in_axes4_xy = (
-        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_J_5_t +
-            six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x
+        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_s_5 + six_r_J_5_in_spec5_yz*six_r_c_5
         )
         six_r_Jc_4_in_axes4_xz = (
-        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4
+        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_c_5 - six_r_Jc_4_t_4*six_r_s_5
         )
         six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz
         six_r_Jc_4_in_axes4_zz = (
-        six_r_J_4_in_spec4_xx + six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x -
-            six_r_Jc_4_t) - six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t)
+        six_r_J_4_in_spec4_xx + six_r_c_5*(six_r_J_5_in_spec5_xx*six_r_c_5 - six_r_Jc_4_t) -
+            six_r_s_5*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_s_5)
         )
         six_r_Jc_4_in_axes3_xy = (
-        six_r_Jc_4_in_axes4_yz*six_r_h_4_t - six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_yz*six_r_s_4 - six_r_Jc_4_in_axes4_xz*six_r_c_4
         )
         six_r_Jc_4_in_axes3_yz = (
-        six_r_Jc_4_in_axes4_xz*six_r_h_4_t + six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_xz*six_r_s_4 + six_r_Jc_4_in_axes4_yz*six_r_c_4
         )
         # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
         six_r_L_c_4_3_t = six_r_h_4_in_spec3_y*six_r_joint4_offset_x
@@ -3634,17 +3612,17 @@ def _run_dynamics(m, X, V, q):
         six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
         six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_y + six_r_hc_3_in_axes3_x*six_r_s_3
         # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_h_4_t
-        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t
-        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
-        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_h_4_t
+        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_s_4
+        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_c_4 - six_r_Jc_3_t
+        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_c_4
+        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_s_4
         six_r_Jc_3_in_axes3_xx = (
-        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z -
-            six_r_Jc_3_t_6*six_r_h_4_t
+        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_c_4 -
+            six_r_Jc_3_t_6*six_r_s_4
         )
         six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t - six_r_J_3_in_spec3_xy
         six_r_Jc_3_in_axes3_xz = (
-        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
+        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_s_4 - six_r_Jc_3_t_6*six_r_c_4
         )
         six_r_Jc_3_in_axes3_yy = (
         six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
@@ -3653,9 +3631,9 @@ def _run_dynamics(m, X, V, q):
         six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         )
         six_r_Jc_3_in_axes3_zz = (
-        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
-            six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z) + six_r_h_4_t*(six_r_Jc_3_t_5 +
-            six_r_Jc_4_in_axes4_xx*six_r_h_4_t)
+        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_c_4*(six_r_Jc_3_t +
+            six_r_Jc_4_in_axes4_yy*six_r_c_4) + six_r_s_4*(six_r_Jc_3_t_5 +
+            six_r_Jc_4_in_axes4_xx*six_r_s_4)
         )
         six_r_Jc_3_in_axes2_yz = (
         six_r_Jc_3_in_axes3_yz*six_r_s_3 - six_r_Jc_3_in_axes3_xz*six_r_c_3
@@ -3801,13 +3779,13 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_o_in_axes4_x = (
-        six_r_mu_4_o_in_axes4_x + six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-            six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y
+        six_r_mu_4_o_in_axes4_x + six_r_c_5*six_r_mu_5_o_in_axes5_y +
+            six_r_mu_5_o_in_axes5_x*six_r_s_5
         )
         six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z
         six_r_N_4_o_in_axes4_z = (
-        six_r_mu_4_o_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-            six_r_J_5_t*six_r_mu_5_o_in_axes5_y
+        six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_x -
+            six_r_mu_5_o_in_axes5_y*six_r_s_5
         )
         # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         six_r_dalpha_Gamma_4_in_axes5_x = (
@@ -3828,9 +3806,7 @@ def _run_dynamics(m, X, V, q):
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = (
-        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
-        )
+        six_r_d_Gamma_4_t = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
         six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_3 = (
         inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t_2*six_r_w_1_t_11)
@@ -3850,12 +3826,12 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_d_Gamma_4_in_axes5_x = (
         six_r_d_Gamma_4_t_4*six_r_w_1_t_46 + six_r_d_Gamma_4_t_5*six_r_w_1_t_64 +
-            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_J_5_t*six_r_h_5_in_spec5_z
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_h_5_in_spec5_z*six_r_s_5
         )
         six_r_d_Gamma_4_in_axes5_y = (
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_d_Gamma_4_t_3*six_r_w_1_t_25 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_47 - six_r_d_Gamma_4_t_5*six_r_w_1_t_65 -
-            six_r_d_Gamma_4_t_6*six_r_w_1_t_77 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_c_5*six_r_h_5_in_spec5_z -
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_25 - six_r_d_Gamma_4_t_4*six_r_w_1_t_47 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_65 - six_r_d_Gamma_4_t_6*six_r_w_1_t_77
         )
         six_r_d_Gamma_4_in_axes5_z = (
         six_r_d_Gamma_4_t + six_r_d_Gamma_4_t_3*six_r_w_1_t_26 +
@@ -3890,15 +3866,13 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_o_in_axes3_x = (
-        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
-            six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z
+        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_s_4 +
+            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_o_in_axes4_x*six_r_c_4
         )
         six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y
         six_r_N_3_o_in_axes3_z = (
-        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_h_4_t +
-            six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
-            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_s_4 +
+            six_r_N_4_o_in_axes4_y*six_r_c_4 - six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
@@ -3927,10 +3901,10 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_d_Gamma_3_t = (
-        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z - six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y
+        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z - six_r_c_4*six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_3_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z - six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x
+        six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z - six_r_c_4*six_r_h_5_in_spec5_x
         )
         six_r_d_Gamma_3_t_3 = (
         six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x
@@ -4387,8 +4361,8 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
             six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_J_5_t*six_r_w_4_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_w_3_t)
+            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_w_3_t -
+            six_r_s_5*six_r_w_4_in_axes5_y)
         )
         six_r_d_c_in_axes5_xz = (
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
@@ -4401,8 +4375,8 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_d_c_in_axes5_yy = (
         six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y
+            six_r_h_5_in_spec5_z*(six_r_c_5*six_r_w_4_in_axes5_y +
+            six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y + six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y
             - six_r_e_2_in_axes5_x*six_r_w_3_t) - six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y
             - six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
@@ -4872,21 +4846,6 @@ def _run_M(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        six_r_h_4_in_spec2_z = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
-        )
-        six_r_h_4_in_spec3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
-        )
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
-        six_r_J_5_in_axes4_yz = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
-        )
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -4909,14 +4868,27 @@ def _run_M(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_h_4_in_spec2_z = six_r_c_4*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_s_4
+        six_r_h_4_in_spec3_y = six_r_c_4*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_s_4
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
+        # (six_r-J_5) inertia tensor of link 5 about the connection point
+        six_r_J_5_in_axes4_yz = six_r_J_5_in_spec5_xz*six_r_c_5 - six_r_J_5_in_spec5_yz*six_r_s_5
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -4929,9 +4901,9 @@ def _run_M(m, X, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -4958,25 +4930,19 @@ def _run_M(m, X, q):
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -4984,10 +4950,10 @@ def _run_M(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -4996,17 +4962,17 @@ def _run_M(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -5017,31 +4983,30 @@ def _run_M(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -5074,11 +5039,9 @@ def _run_M(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -5086,7 +5049,7 @@ def _run_M(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -5098,16 +5061,15 @@ def _run_M(m, X, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -5383,71 +5345,70 @@ def _run_M(m, X, q):
         )
         # (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_dalpha_alpha_5_in_axes5_xx = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_x*six_r_o_2_t -
-            six_r_e_2_in_axes5_x*six_r_o_3_t - six_r_e_4_in_axes5_x*six_r_o_4_t
+        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x - six_r_c_5*six_r_o_4_t -
+            six_r_e_2_in_axes5_x*six_r_o_2_t - six_r_e_2_in_axes5_x*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_xy = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y
+        six_r_c_5*six_r_o_4_in_axes5_y + six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y +
+            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_xz = (
-        six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
-            six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
+        six_r_c_5*six_r_o_4_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z +
+            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_yx = (
-        six_r_J_5_t*six_r_o_4_t + six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
+        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x + six_r_o_4_t*six_r_s_5 -
             six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_yy = (
         six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_J_5_t*six_r_o_4_in_axes5_y
+            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_o_4_in_axes5_y*six_r_s_5
         )
         six_r_dalpha_alpha_5_in_axes5_yz = (
         six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z -
-            six_r_J_5_t*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_y*six_r_o_1_t
+            six_r_e_1_in_axes5_y*six_r_o_1_t - six_r_o_4_in_axes5_z*six_r_s_5
         )
         six_r_dalpha_alpha_5_in_axes5_zx = (
-        six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_z*six_r_o_2_t - six_r_e_2_in_axes5_z*six_r_o_3_t
+        six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - six_r_c_4*six_r_o_2_t -
+            six_r_c_4*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_zy = (
-        six_r_o_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y
+        six_r_o_5_in_axes5_y + six_r_c_4*six_r_o_2_in_axes5_y + six_r_c_4*six_r_o_3_in_axes5_y +
+            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_zz = (
-        six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z -
-            six_r_o_5_t - six_r_e_1_in_axes5_z*six_r_o_1_t
+        six_r_c_4*six_r_o_2_in_axes5_z + six_r_c_4*six_r_o_3_in_axes5_z - six_r_o_5_t -
+            six_r_e_1_in_axes5_z*six_r_o_1_t
         )
         # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_d_alpha_5_in_axes5_xz = (
-        six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z
+        six_r_c_5*six_r_w_4_in_axes5_z + six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_yz = (
         six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_J_5_t*six_r_w_4_in_axes5_z
+            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_s_5*six_r_w_4_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_zy = (
-        six_r_w_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - six_r_e_2_in_axes5_z*six_r_w_3_t
+        six_r_w_5_in_axes5_y + six_r_c_4*six_r_w_2_in_axes5_y +
+            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y - six_r_c_4*six_r_w_3_t
         )
         six_r_d_alpha_5_in_axes5_zz = (
-        six_r_w_5_in_axes5_z + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z
+        six_r_w_5_in_axes5_z + six_r_c_4*six_r_w_2_in_axes5_z + six_r_c_4*six_r_w_3_in_axes5_z +
+            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z
         )
         # (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
         six_r_d_phi_5_in_axes5_xx = (
         six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            - six_r_J_5_t*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
-            - six_r_w_5_t_5)
+            - six_r_s_5*six_r_w_4_in_axes5_x) -
+            six_r_h_5_in_spec5_y*(six_r_c_4*six_r_w_2_in_axes5_x + six_r_c_4*six_r_w_3_in_axes5_x
+            + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x - six_r_w_5_t_5)
         )
         # (six_r-D_3_5) inertia of joint 5 along joint 3
         six_r_D_3_5 = (
         six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x + six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_2_in_axes5_z
+            six_r_J_5_in_spec5_zz*six_r_c_4
         )
         # (six_r-D_1_5) inertia of joint 5 along joint 1
         six_r_D_1_5 = (
@@ -5455,30 +5416,29 @@ def _run_M(m, X, q):
             six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z
         )
         # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
-        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t
-        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
-        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t
-        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_s_5
+        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_c_5
+        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_s_5
+        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_c_5
         six_r_Jc_4_in_axes4_xx = (
-        six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        six_r_J_4_in_spec4_yy + six_r_Jc_4_t_3*six_r_s_5 + six_r_Jc_4_t_4*six_r_c_5
         )
         six_r_Jc_4_in_axes4_xy = (
-        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_J_5_t +
-            six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x
+        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_s_5 + six_r_J_5_in_spec5_yz*six_r_c_5
         )
         six_r_Jc_4_in_axes4_xz = (
-        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4
+        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_c_5 - six_r_Jc_4_t_4*six_r_s_5
         )
         six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz
         six_r_Jc_4_in_axes4_zz = (
-        six_r_J_4_in_spec4_xx + six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x -
-            six_r_Jc_4_t) - six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t)
+        six_r_J_4_in_spec4_xx + six_r_c_5*(six_r_J_5_in_spec5_xx*six_r_c_5 - six_r_Jc_4_t) -
+            six_r_s_5*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_s_5)
         )
         six_r_Jc_4_in_axes3_xy = (
-        six_r_Jc_4_in_axes4_yz*six_r_h_4_t - six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_yz*six_r_s_4 - six_r_Jc_4_in_axes4_xz*six_r_c_4
         )
         six_r_Jc_4_in_axes3_yz = (
-        six_r_Jc_4_in_axes4_xz*six_r_h_4_t + six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_xz*six_r_s_4 + six_r_Jc_4_in_axes4_yz*six_r_c_4
         )
         # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
         six_r_L_c_4_3_t = six_r_h_4_in_spec3_y*six_r_joint4_offset_x
@@ -5502,17 +5462,17 @@ def _run_M(m, X, q):
         six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
         six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_y + six_r_hc_3_in_axes3_x*six_r_s_3
         # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_h_4_t
-        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t
-        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
-        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_h_4_t
+        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_s_4
+        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_c_4 - six_r_Jc_3_t
+        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_c_4
+        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_s_4
         six_r_Jc_3_in_axes3_xx = (
-        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z -
-            six_r_Jc_3_t_6*six_r_h_4_t
+        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_c_4 -
+            six_r_Jc_3_t_6*six_r_s_4
         )
         six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t - six_r_J_3_in_spec3_xy
         six_r_Jc_3_in_axes3_xz = (
-        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
+        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_s_4 - six_r_Jc_3_t_6*six_r_c_4
         )
         six_r_Jc_3_in_axes3_yy = (
         six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
@@ -5521,9 +5481,9 @@ def _run_M(m, X, q):
         six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         )
         six_r_Jc_3_in_axes3_zz = (
-        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
-            six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z) + six_r_h_4_t*(six_r_Jc_3_t_5 +
-            six_r_Jc_4_in_axes4_xx*six_r_h_4_t)
+        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_c_4*(six_r_Jc_3_t +
+            six_r_Jc_4_in_axes4_yy*six_r_c_4) + six_r_s_4*(six_r_Jc_3_t_5 +
+            six_r_Jc_4_in_axes4_xx*six_r_s_4)
         )
         six_r_Jc_3_in_axes2_yz = (
         six_r_Jc_3_in_axes3_yz*six_r_s_3 - six_r_Jc_3_in_axes3_xz*six_r_c_3
@@ -5631,9 +5591,7 @@ def _run_M(m, X, q):
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = (
-        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
-        )
+        six_r_d_Gamma_4_t = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
         six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_8*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_3 = (
         inv_six_r_w_1_t_24*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t_2*six_r_w_1_t_11)
@@ -5653,12 +5611,12 @@ def _run_M(m, X, q):
         )
         six_r_d_Gamma_4_in_axes5_x = (
         six_r_d_Gamma_4_t_4*six_r_w_1_t_46 + six_r_d_Gamma_4_t_5*six_r_w_1_t_64 +
-            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_J_5_t*six_r_h_5_in_spec5_z
+            six_r_d_Gamma_4_t_6*six_r_w_1_t_76 - six_r_h_5_in_spec5_z*six_r_s_5
         )
         six_r_d_Gamma_4_in_axes5_y = (
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_d_Gamma_4_t_3*six_r_w_1_t_25 -
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_47 - six_r_d_Gamma_4_t_5*six_r_w_1_t_65 -
-            six_r_d_Gamma_4_t_6*six_r_w_1_t_77 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
+        six_r_d_Gamma_4_t_2*six_r_w_1_t_9 - six_r_c_5*six_r_h_5_in_spec5_z -
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_25 - six_r_d_Gamma_4_t_4*six_r_w_1_t_47 -
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_65 - six_r_d_Gamma_4_t_6*six_r_w_1_t_77
         )
         six_r_d_Gamma_4_in_axes5_z = (
         six_r_d_Gamma_4_t + six_r_d_Gamma_4_t_3*six_r_w_1_t_26 +
@@ -5688,10 +5646,10 @@ def _run_M(m, X, q):
         )
         # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_d_Gamma_3_t = (
-        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z - six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y
+        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z - six_r_c_4*six_r_h_5_in_spec5_y
         )
         six_r_d_Gamma_3_t_2 = (
-        six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z - six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x
+        six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z - six_r_c_4*six_r_h_5_in_spec5_x
         )
         six_r_d_Gamma_3_t_3 = (
         six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x
@@ -6058,8 +6016,8 @@ def _run_M(m, X, q):
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
             six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_J_5_t*six_r_w_4_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_w_3_t)
+            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_w_3_t -
+            six_r_s_5*six_r_w_4_in_axes5_y)
         )
         six_r_d_c_in_axes5_xz = (
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
@@ -6072,8 +6030,8 @@ def _run_M(m, X, q):
         )
         six_r_d_c_in_axes5_yy = (
         six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y
+            six_r_h_5_in_spec5_z*(six_r_c_5*six_r_w_4_in_axes5_y +
+            six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y + six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y
             - six_r_e_2_in_axes5_x*six_r_w_3_t) - six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y
             - six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
@@ -6478,12 +6436,6 @@ def _run_Z(m, X, V, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -6506,14 +6458,22 @@ def _run_Z(m, X, V, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -6526,9 +6486,9 @@ def _run_Z(m, X, V, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -6573,25 +6533,19 @@ def _run_Z(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -6599,10 +6553,10 @@ def _run_Z(m, X, V, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -6611,17 +6565,17 @@ def _run_Z(m, X, V, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -6632,31 +6586,30 @@ def _run_Z(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -6689,11 +6642,9 @@ def _run_Z(m, X, V, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -6701,7 +6652,7 @@ def _run_Z(m, X, V, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -6713,16 +6664,15 @@ def _run_Z(m, X, V, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -6939,7 +6889,7 @@ def _run_Z(m, X, V, q):
         )
         six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_13 - six_r_omega_1_t
         six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_13 - six_r_omega_1_t_2
-        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_13 - six_r_omega_1_t_3
+        six_r_omega_2_in_axes5_z = six_r_c_4*six_r_qd_1_t_13 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_13
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -6949,15 +6899,15 @@ def _run_Z(m, X, V, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_12 + six_r_qd_1_t_13
         six_r_omega_3_in_axes4_x = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z + six_r_h_4_t*six_r_omega_2_in_axes3_x
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = six_r_J_5_t*six_r_omega_3_in_axes4_x
-        six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x
-        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y
-        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_2_in_axes3_y
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
@@ -6968,8 +6918,8 @@ def _run_Z(m, X, V, q):
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z
-        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
@@ -7007,32 +6957,28 @@ def _run_Z(m, X, V, q):
         six_r_zeta_2_in_axes3_y = (
         six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_x
-        six_r_zeta_2_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y - six_r_J_5_t*six_r_zeta_2_t
-        )
-        six_r_zeta_2_in_axes5_y = (
-        -six_r_J_5_t*six_r_zeta_2_in_axes3_y - six_r_e_4_in_axes5_x*six_r_zeta_2_t
-        )
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_12
         six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_12
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
-        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_e_2_in_axes5_z
-        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_h_4_t
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
         six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
         six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t
-        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_J_5_t*six_r_beta_4_in_axes4_x
-        six_r_beta_4_t_2 = six_r_J_5_t*six_r_beta_3_in_axes3_y
-        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_beta_4_t_2
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5
@@ -7046,26 +6992,26 @@ def _run_Z(m, X, V, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
-        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
         six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t
         six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2
         six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
-        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
         six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
         six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
         six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
         six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
@@ -7094,12 +7040,12 @@ def _run_Z(m, X, V, q):
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_e_4_in_axes5_x +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
             six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
             six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
             six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
-            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_J_5_t*six_r_beta_3_t) -
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
             six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
             six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
@@ -7199,11 +7145,11 @@ def _run_Z(m, X, V, q):
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
         # (six_r-alpha_4_o) remainder of: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_o_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_o_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_o_in_axes4_y = (
-        six_r_alpha_3_o_in_axes3_x*six_r_h_4_t + six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z -
+        six_r_alpha_3_o_in_axes3_x*six_r_s_4 + six_r_alpha_3_o_in_axes3_z*six_r_c_4 -
             six_r_zeta_4_t
         )
         six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o
@@ -7216,12 +7162,12 @@ def _run_Z(m, X, V, q):
         six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x
         # (six_r-alpha_5_o) remainder of: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x + six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
-            six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x
+        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_x*six_r_s_5 +
+            six_r_alpha_4_o_in_axes4_z*six_r_c_5
         )
         six_r_alpha_5_o_in_axes5_y = (
-        six_r_alpha_4_o_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t -
-            six_r_J_5_t*six_r_alpha_4_o_in_axes4_z
+        six_r_alpha_4_o_in_axes4_x*six_r_c_5 - six_r_zeta_5_t -
+            six_r_alpha_4_o_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_o_in_axes5_z = (
         six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_8*(six_r_qdd_1_o_t_2*six_r_w_1_t_10 +
@@ -7285,19 +7231,15 @@ def _run_Z(m, X, V, q):
             six_r_f_3_o_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
-        six_r_g_in_axes4_x = (
-        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
-        )
-        six_r_g_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
-        )
+        six_r_g_in_axes4_x = six_r_g_in_axes1_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_x
+        six_r_g_in_axes4_y = six_r_c_4*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_s_4
         # (six_r-acc_4_o) remainder of: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
-            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_a_o_4_o_in_axes3_z*six_r_s_4 - six_r_g_in_axes4_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_c_4
         )
         six_r_acc_4_o_in_axes4_y = (
-        six_r_a_o_4_o_in_axes3_x*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
+        six_r_a_o_4_o_in_axes3_x*six_r_s_4 + six_r_a_o_4_o_in_axes3_z*six_r_c_4 -
             six_r_g_in_axes4_y
         )
         six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
@@ -7323,10 +7265,10 @@ def _run_Z(m, X, V, q):
             six_r_f_4_o_t)
         )
         six_r_f_4_o_in_axes3_x = (
-        six_r_f_4_o_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x
+        six_r_f_4_o_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_o_in_axes4_x
         )
         six_r_f_4_o_in_axes3_z = (
-        six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
+        six_r_c_4*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_s_4
         )
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_g_in_axes5_x = (
@@ -7402,13 +7344,13 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-N_4_o) remainder of: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_o_in_axes4_x = (
-        six_r_mu_4_o_in_axes4_x + six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
-            six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y
+        six_r_mu_4_o_in_axes4_x + six_r_c_5*six_r_mu_5_o_in_axes5_y +
+            six_r_mu_5_o_in_axes5_x*six_r_s_5
         )
         six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z
         six_r_N_4_o_in_axes4_z = (
-        six_r_mu_4_o_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
-            six_r_J_5_t*six_r_mu_5_o_in_axes5_y
+        six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_x -
+            six_r_mu_5_o_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3_o) remainder of: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
@@ -7438,15 +7380,13 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-N_3_o) remainder of: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_o_in_axes3_x = (
-        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
-            six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z
+        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_s_4 +
+            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_o_in_axes4_x*six_r_c_4
         )
         six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y
         six_r_N_3_o_in_axes3_z = (
-        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_h_4_t +
-            six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
-            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_s_4 +
+            six_r_N_4_o_in_axes4_y*six_r_c_4 - six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3_o) remainder of: inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
@@ -7676,12 +7616,6 @@ def _run_H(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -7704,14 +7638,22 @@ def _run_H(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -7724,9 +7666,9 @@ def _run_H(m, X, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -7753,25 +7695,19 @@ def _run_H(m, X, q):
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -7779,10 +7715,10 @@ def _run_H(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -7791,17 +7727,17 @@ def _run_H(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -7812,31 +7748,30 @@ def _run_H(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -7869,11 +7804,9 @@ def _run_H(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -7881,7 +7814,7 @@ def _run_H(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -7893,16 +7826,15 @@ def _run_H(m, X, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -8252,12 +8184,6 @@ def _run_required(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -8280,14 +8206,22 @@ def _run_required(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -8300,9 +8234,9 @@ def _run_required(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -8347,25 +8281,19 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -8373,10 +8301,10 @@ def _run_required(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -8385,17 +8313,17 @@ def _run_required(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -8406,31 +8334,30 @@ def _run_required(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -8463,11 +8390,9 @@ def _run_required(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -8475,19 +8400,18 @@ def _run_required(m, X, V, A, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
         six_r_w_1_t = six_r_n_m1_t_11*six_r_size
         six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
@@ -8733,9 +8657,7 @@ def _run_required(m, X, V, A, q):
         six_r_omega_2_in_axes5_y_2 = (
         six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
-        six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
-        )
+        six_r_omega_2_in_axes5_z_2 = six_r_omega_1_in_axes5_z - six_r_c_4*six_r_qd_1_t_18
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
         six_r_W_2_in_axes2_xy_2 = -six_r_omega_1_in_axes2_x_2*six_r_omega_1_t_4
@@ -8745,17 +8667,15 @@ def _run_required(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
+        six_r_omega_3_in_axes3_z_2*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x_2
         )
         six_r_omega_3_in_axes4_y_2 = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
+        six_r_c_4*six_r_omega_3_in_axes3_z_2 + six_r_omega_2_in_axes3_x_2*six_r_s_4
         )
-        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
-        )
-        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_t_3 = six_r_omega_3_in_axes4_x_2*six_r_s_5
+        six_r_omega_3_t_4 = six_r_c_5*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_2_in_axes3_y_2*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_t_4 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_x_2
         six_r_W_3_t_5 = six_r_omega_3_in_axes3_z_2*six_r_omega_3_in_axes3_z_2
@@ -8766,10 +8686,8 @@ def _run_required(m, X, V, A, q):
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
-        six_r_omega_4_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
-        )
-        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_4_in_axes4_z_2*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_y_2
         six_r_W_4_in_axes4_xz_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_4_in_axes4_z_2
@@ -8807,13 +8725,13 @@ def _run_required(m, X, V, A, q):
         six_r_zeta_2_in_axes3_y_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
-        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_t_2 = six_r_c_4*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_s_4*six_r_zeta_2_in_axes3_x_2
         six_r_zeta_2_in_axes5_x_2 = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        six_r_c_5*six_r_zeta_2_in_axes3_y_2 - six_r_s_5*six_r_zeta_2_t_2
         )
         six_r_zeta_2_in_axes5_y_2 = (
-        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        -six_r_c_5*six_r_zeta_2_t_2 - six_r_s_5*six_r_zeta_2_in_axes3_y_2
         )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
@@ -8821,20 +8739,18 @@ def _run_required(m, X, V, A, q):
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
         six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
-        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_c_4
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
         six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
-        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
-        six_r_beta_4_in_axes5_y_2 = (
-        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
-        )
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_c_5
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_beta_4_in_axes4_x_2*six_r_s_5
+        six_r_beta_4_t_4 = six_r_beta_3_in_axes3_y_2*six_r_s_5
+        six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*six_r_c_5 - six_r_beta_4_t_4
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
         six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
@@ -8846,20 +8762,20 @@ def _run_required(m, X, V, A, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
-        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
-        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
-        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
         six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
         six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
         six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
@@ -8899,13 +8815,13 @@ def _run_required(m, X, V, A, q):
             six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_c_5 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
             six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
             six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
-            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
-            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_beta_3_t_2*six_r_s_5) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
@@ -9033,12 +8949,12 @@ def _run_required(m, X, V, A, q):
         six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_h_4_t +
-            six_r_alpha_3_in_axes3_z*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
+            six_r_alpha_3_in_axes3_z*six_r_c_4
         )
         six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
@@ -9050,12 +8966,11 @@ def _run_required(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x_2 + six_r_J_5_t*six_r_alpha_4_in_axes4_x +
-            six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x
+        six_r_zeta_5_in_axes5_x_2 + six_r_alpha_4_in_axes4_x*six_r_s_5 +
+            six_r_alpha_4_in_axes4_z*six_r_c_5
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t_2 -
-            six_r_J_5_t*six_r_alpha_4_in_axes4_z
+        six_r_alpha_4_in_axes4_x*six_r_c_5 - six_r_zeta_5_t_2 - six_r_alpha_4_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
         # (six_r-B_5) acceleration tensor of link 5
@@ -9112,19 +9027,13 @@ def _run_required(m, X, V, A, q):
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
-        six_r_g_in_axes4_x = (
-        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
-        )
-        six_r_g_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
-        )
+        six_r_g_in_axes4_x = six_r_g_in_axes1_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_x
+        six_r_g_in_axes4_y = six_r_c_4*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_s_4
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
-            six_r_a_o_4_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_a_o_4_in_axes3_z*six_r_s_4 - six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*six_r_c_4
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_x*six_r_h_4_t + six_r_a_o_4_in_axes3_z*six_r_e_2_in_axes5_z -
-            six_r_g_in_axes4_y
+        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 - six_r_g_in_axes4_y
         )
         six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
@@ -9145,12 +9054,8 @@ def _run_required(m, X, V, A, q):
             six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_19 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_x = (
-        six_r_f_4_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x
-        )
-        six_r_f_4_in_axes3_z = (
-        six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_h_4_t
-        )
+        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
+        six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_g_in_axes5_x = (
         axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
@@ -9222,13 +9127,11 @@ def _run_required(m, X, V, A, q):
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_in_axes4_x = (
-        six_r_mu_4_in_axes4_x + six_r_J_5_t*six_r_mu_5_in_axes5_x +
-            six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y
+        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
         )
         six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
-            six_r_J_5_t*six_r_mu_5_in_axes5_y
+        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
@@ -9257,13 +9160,13 @@ def _run_required(m, X, V, A, q):
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_in_axes3_x = (
-        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_h_4_t +
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_e_2_in_axes5_z
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
         )
         six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_h_4_t +
-            six_r_N_4_in_axes4_y*six_r_e_2_in_axes5_z - six_r_f_4_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
+            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
@@ -9533,12 +9436,6 @@ def _run_joint_rates(m, X, V, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -9561,14 +9458,22 @@ def _run_joint_rates(m, X, V, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -9581,9 +9486,9 @@ def _run_joint_rates(m, X, V, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -9628,25 +9533,19 @@ def _run_joint_rates(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -9654,10 +9553,10 @@ def _run_joint_rates(m, X, V, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -9666,17 +9565,17 @@ def _run_joint_rates(m, X, V, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -9687,31 +9586,30 @@ def _run_joint_rates(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -9744,11 +9642,9 @@ def _run_joint_rates(m, X, V, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -9756,19 +9652,18 @@ def _run_joint_rates(m, X, V, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
         six_r_w_1_t = six_r_n_m1_t_11*six_r_size
         six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
@@ -10065,12 +9960,6 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -10093,14 +9982,22 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -10113,9 +10010,9 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -10160,25 +10057,19 @@ def _run_joint_accelerations(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -10186,10 +10077,10 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -10198,17 +10089,17 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -10219,31 +10110,30 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -10276,11 +10166,9 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -10288,19 +10176,18 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
         six_r_w_1_t = six_r_n_m1_t_11*six_r_size
         six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
@@ -10507,9 +10394,7 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_omega_2_in_axes5_y_2 = (
         six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
-        six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
-        )
+        six_r_omega_2_in_axes5_z_2 = six_r_omega_1_in_axes5_z - six_r_c_4*six_r_qd_1_t_18
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
         six_r_W_2_in_axes5_xy_2 = six_r_omega_2_in_axes5_x_2*six_r_omega_2_in_axes5_y_2
@@ -10518,25 +10403,21 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
+        six_r_omega_3_in_axes3_z_2*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x_2
         )
         six_r_omega_3_in_axes4_y_2 = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
+        six_r_c_4*six_r_omega_3_in_axes3_z_2 + six_r_omega_2_in_axes3_x_2*six_r_s_4
         )
-        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
-        )
-        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_t_3 = six_r_omega_3_in_axes4_x_2*six_r_s_5
+        six_r_omega_3_t_4 = six_r_c_5*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_2_in_axes3_y_2*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
-        six_r_omega_4_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
-        )
-        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_4_in_axes4_z_2*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes5_xy_2 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_y_2
         # (six_r-omega_5) angular velocity of link 5
@@ -10570,13 +10451,13 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_zeta_2_in_axes3_y_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
-        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_t_2 = six_r_c_4*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_s_4*six_r_zeta_2_in_axes3_x_2
         six_r_zeta_2_in_axes5_x_2 = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        six_r_c_5*six_r_zeta_2_in_axes3_y_2 - six_r_s_5*six_r_zeta_2_t_2
         )
         six_r_zeta_2_in_axes5_y_2 = (
-        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        -six_r_c_5*six_r_zeta_2_t_2 - six_r_s_5*six_r_zeta_2_in_axes3_y_2
         )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
@@ -10584,20 +10465,18 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
         six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
-        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_c_4
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
         six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
-        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
-        six_r_beta_4_in_axes5_y_2 = (
-        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
-        )
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_c_5
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_beta_4_in_axes4_x_2*six_r_s_5
+        six_r_beta_4_t_4 = six_r_beta_3_in_axes3_y_2*six_r_s_5
+        six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*six_r_c_5 - six_r_beta_4_t_4
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
         six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
@@ -10609,20 +10488,20 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
-        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
-        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
-        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
         six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
         six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
         six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
@@ -10662,13 +10541,13 @@ def _run_joint_accelerations(m, X, V, A, q):
             six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_c_5 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
             six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
             six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
-            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
-            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_beta_3_t_2*six_r_s_5) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
@@ -10896,12 +10775,6 @@ def _run_legs(m, X, V, A, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -10924,14 +10797,22 @@ def _run_legs(m, X, V, A, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -10944,9 +10825,9 @@ def _run_legs(m, X, V, A, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -10991,25 +10872,19 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -11017,10 +10892,10 @@ def _run_legs(m, X, V, A, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -11029,17 +10904,17 @@ def _run_legs(m, X, V, A, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -11050,31 +10925,30 @@ def _run_legs(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -11107,11 +10981,9 @@ def _run_legs(m, X, V, A, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -11119,19 +10991,18 @@ def _run_legs(m, X, V, A, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
         six_r_w_1_t = six_r_n_m1_t_11*six_r_size
         six_r_w_1_t_2 = six_r_n_m2_t*six_r_size
@@ -11377,9 +11248,7 @@ def _run_legs(m, X, V, A, q):
         six_r_omega_2_in_axes5_y_2 = (
         six_r_omega_1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_qd_1_t_18
         )
-        six_r_omega_2_in_axes5_z_2 = (
-        six_r_omega_1_in_axes5_z - six_r_e_2_in_axes5_z*six_r_qd_1_t_18
-        )
+        six_r_omega_2_in_axes5_z_2 = six_r_omega_1_in_axes5_z - six_r_c_4*six_r_qd_1_t_18
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz_2 = six_r_omega_1_t_4*six_r_qd_1_t_18
         six_r_W_2_in_axes2_xy_2 = -six_r_omega_1_in_axes2_x_2*six_r_omega_1_t_4
@@ -11389,17 +11258,15 @@ def _run_legs(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z_2 = -six_r_qd_1_t_17 - six_r_qd_1_t_18
         six_r_omega_3_in_axes4_x_2 = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z_2 - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x_2
+        six_r_omega_3_in_axes3_z_2*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x_2
         )
         six_r_omega_3_in_axes4_y_2 = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z_2 + six_r_h_4_t*six_r_omega_2_in_axes3_x_2
+        six_r_c_4*six_r_omega_3_in_axes3_z_2 + six_r_omega_2_in_axes3_x_2*six_r_s_4
         )
-        six_r_omega_3_t_3 = six_r_J_5_t*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_t_4 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x_2
-        six_r_omega_3_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y_2
-        )
-        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_t_3 = six_r_omega_3_in_axes4_x_2*six_r_s_5
+        six_r_omega_3_t_4 = six_r_c_5*six_r_omega_3_in_axes4_x_2
+        six_r_omega_3_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_2_in_axes3_y_2
+        six_r_omega_3_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_2_in_axes3_y_2*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_t_4 = six_r_omega_2_in_axes3_x_2*six_r_omega_2_in_axes3_x_2
         six_r_W_3_t_5 = six_r_omega_3_in_axes3_z_2*six_r_omega_3_in_axes3_z_2
@@ -11410,10 +11277,8 @@ def _run_legs(m, X, V, A, q):
         six_r_W_3_in_axes5_xy_2 = six_r_omega_3_in_axes5_x_2*six_r_omega_3_in_axes5_y_2
         # (six_r-omega_4) angular velocity of link 4
         six_r_omega_4_in_axes4_z_2 = six_r_omega_2_in_axes3_y_2 + six_r_qd_4_2
-        six_r_omega_4_in_axes5_x_2 = (
-        six_r_omega_3_t_3 + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z_2
-        )
-        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_J_5_t*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_x_2 = six_r_omega_3_t_3 + six_r_c_5*six_r_omega_4_in_axes4_z_2
+        six_r_omega_4_in_axes5_y_2 = six_r_omega_3_t_4 - six_r_omega_4_in_axes4_z_2*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_3_in_axes4_y_2
         six_r_W_4_in_axes4_xz_2 = six_r_omega_3_in_axes4_x_2*six_r_omega_4_in_axes4_z_2
@@ -11451,13 +11316,13 @@ def _run_legs(m, X, V, A, q):
         six_r_zeta_2_in_axes3_y_2 = (
         six_r_W_2_in_axes2_yz_2*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y_2
         )
-        six_r_zeta_2_t_2 = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x_2
-        six_r_zeta_2_in_axes5_z_2 = six_r_h_4_t*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_t_2 = six_r_c_4*six_r_zeta_2_in_axes3_x_2
+        six_r_zeta_2_in_axes5_z_2 = six_r_s_4*six_r_zeta_2_in_axes3_x_2
         six_r_zeta_2_in_axes5_x_2 = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y_2 - six_r_J_5_t*six_r_zeta_2_t_2
+        six_r_c_5*six_r_zeta_2_in_axes3_y_2 - six_r_s_5*six_r_zeta_2_t_2
         )
         six_r_zeta_2_in_axes5_y_2 = (
-        -six_r_J_5_t*six_r_zeta_2_in_axes3_y_2 - six_r_e_4_in_axes5_x*six_r_zeta_2_t_2
+        -six_r_c_5*six_r_zeta_2_t_2 - six_r_s_5*six_r_zeta_2_in_axes3_y_2
         )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_t_2 = six_r_omega_2_in_axes3_y_2*six_r_qd_1_t_17
@@ -11465,20 +11330,18 @@ def _run_legs(m, X, V, A, q):
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x_2 = six_r_zeta_2_in_axes3_x_2 - six_r_zeta_3_t_2
         six_r_beta_3_in_axes3_y_2 = six_r_zeta_2_in_axes3_y_2 + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_e_2_in_axes5_z
-        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_h_4_t
+        six_r_beta_3_t_2 = six_r_beta_3_in_axes3_x_2*six_r_c_4
+        six_r_beta_3_in_axes4_y_2 = six_r_beta_3_in_axes3_x_2*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x_2 = six_r_omega_3_in_axes4_y_2*six_r_qd_4_2
         six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x_2*six_r_qd_4_2
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
         six_r_beta_4_in_axes4_x_2 = six_r_zeta_4_in_axes4_x_2 - six_r_beta_3_t_2
         six_r_beta_4_in_axes4_y_2 = six_r_beta_3_in_axes4_y_2 + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_J_5_t*six_r_beta_4_in_axes4_x_2
-        six_r_beta_4_t_4 = six_r_J_5_t*six_r_beta_3_in_axes3_y_2
-        six_r_beta_4_in_axes5_y_2 = (
-        six_r_beta_4_in_axes4_x_2*six_r_e_4_in_axes5_x - six_r_beta_4_t_4
-        )
+        six_r_beta_4_t_3 = six_r_beta_3_in_axes3_y_2*six_r_c_5
+        six_r_beta_4_in_axes5_x_2 = six_r_beta_4_t_3 + six_r_beta_4_in_axes4_x_2*six_r_s_5
+        six_r_beta_4_t_4 = six_r_beta_3_in_axes3_y_2*six_r_s_5
+        six_r_beta_4_in_axes5_y_2 = six_r_beta_4_in_axes4_x_2*six_r_c_5 - six_r_beta_4_t_4
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x_2 = six_r_omega_4_in_axes5_y_2*six_r_qd_5_2
         six_r_zeta_5_t_2 = six_r_omega_4_in_axes5_x_2*six_r_qd_5_2
@@ -11490,20 +11353,20 @@ def _run_legs(m, X, V, A, q):
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
         six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
         six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
-        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
-        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
         six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
-        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
-        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
-        six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
         six_r_bias_t_19 = six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes4_y_2
         six_r_bias_t_20 = six_r_omega_4_in_axes5_x_2*six_r_omega_4_in_axes5_x_2
         six_r_bias_t_21 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
@@ -11543,13 +11406,13 @@ def _run_legs(m, X, V, A, q):
             six_r_W_1_in_axes5_yz_2*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz_2 - six_r_zeta_2_in_axes5_y_2) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz_2 + six_r_zeta_2_in_axes5_x_2) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_e_4_in_axes5_x +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_4 + six_r_beta_3_t_2*six_r_c_5 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_x_2) +
             six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_x_2 -
             six_r_beta_4_in_axes5_y_2) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz_2 -
             six_r_beta_5_in_axes5_y_2) - six_r_bias_t_16*(six_r_beta_4_t_3 +
-            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_J_5_t*six_r_beta_3_t_2)
-            - six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
+            six_r_omega_3_in_axes4_y_2*six_r_omega_3_in_axes5_y_2 - six_r_beta_3_t_2*six_r_s_5) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x_2 +
             six_r_omega_3_in_axes4_y_2*six_r_omega_4_in_axes5_y_2) -
             six_r_d_2_in_axes5_z*(six_r_bias_t_21 + six_r_bias_t_22) -
             six_r_d_3_in_axes5_z*(six_r_bias_t_24 + six_r_bias_t_25)
@@ -11677,12 +11540,12 @@ def _run_legs(m, X, V, A, q):
         six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz_2 + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_x_2 + six_r_alpha_3_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_h_4_t +
-            six_r_alpha_3_in_axes3_z*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
+            six_r_alpha_3_in_axes3_z*six_r_c_4
         )
         six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
@@ -11694,12 +11557,11 @@ def _run_legs(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz_2 + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x_2 + six_r_J_5_t*six_r_alpha_4_in_axes4_x +
-            six_r_alpha_4_in_axes4_z*six_r_e_4_in_axes5_x
+        six_r_zeta_5_in_axes5_x_2 + six_r_alpha_4_in_axes4_x*six_r_s_5 +
+            six_r_alpha_4_in_axes4_z*six_r_c_5
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_alpha_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t_2 -
-            six_r_J_5_t*six_r_alpha_4_in_axes4_z
+        six_r_alpha_4_in_axes4_x*six_r_c_5 - six_r_zeta_5_t_2 - six_r_alpha_4_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y + six_r_qdd_5
         # (six_r-B_5) acceleration tensor of link 5
@@ -11756,19 +11618,13 @@ def _run_legs(m, X, V, A, q):
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
-        six_r_g_in_axes4_x = (
-        six_r_g_in_axes1_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_g_in_axes3_x
-        )
-        six_r_g_in_axes4_y = (
-        six_r_e_2_in_axes5_z*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_h_4_t
-        )
+        six_r_g_in_axes4_x = six_r_g_in_axes1_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_x
+        six_r_g_in_axes4_y = six_r_c_4*six_r_g_in_axes1_y + six_r_g_in_axes3_x*six_r_s_4
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_z*six_r_h_4_t - six_r_g_in_axes4_x -
-            six_r_a_o_4_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_a_o_4_in_axes3_z*six_r_s_4 - six_r_g_in_axes4_x - six_r_a_o_4_in_axes3_x*six_r_c_4
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_x*six_r_h_4_t + six_r_a_o_4_in_axes3_z*six_r_e_2_in_axes5_z -
-            six_r_g_in_axes4_y
+        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 - six_r_g_in_axes4_y
         )
         six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
@@ -11789,12 +11645,8 @@ def _run_legs(m, X, V, A, q):
             six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_19 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_x = (
-        six_r_f_4_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_x
-        )
-        six_r_f_4_in_axes3_z = (
-        six_r_e_2_in_axes5_z*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_h_4_t
-        )
+        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
+        six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_g_in_axes5_x = (
         axis_x_six_r_axes5_x*gravity_x + axis_x_six_r_axes5_y*gravity_y +
@@ -11866,13 +11718,11 @@ def _run_legs(m, X, V, A, q):
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
         six_r_N_4_in_axes4_x = (
-        six_r_mu_4_in_axes4_x + six_r_J_5_t*six_r_mu_5_in_axes5_x +
-            six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_y
+        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
         )
         six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_in_axes5_x -
-            six_r_J_5_t*six_r_mu_5_in_axes5_y
+        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
@@ -11901,13 +11751,13 @@ def _run_legs(m, X, V, A, q):
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
         six_r_N_3_in_axes3_x = (
-        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_h_4_t +
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_e_2_in_axes5_z
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
         )
         six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_h_4_t +
-            six_r_N_4_in_axes4_y*six_r_e_2_in_axes5_z - six_r_f_4_in_axes3_x*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
+            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
         six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
@@ -12145,18 +11995,6 @@ def _run_potential(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        six_r_h_4_in_spec2_z = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
-        )
-        six_r_h_4_in_spec3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
-        )
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
         six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
@@ -12169,6 +12007,17 @@ def _run_potential(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-h_4) first moment of link 4 about the origin of link 4
+        six_r_h_4_in_spec2_z = six_r_c_4*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_s_4
+        six_r_h_4_in_spec3_y = six_r_c_4*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_s_4
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
         six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
         six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
@@ -12178,21 +12027,15 @@ def _run_potential(m, X, q):
         six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
         six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = (
-        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
-        )
+        six_r_d_Gamma_4_t = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
         # (potential) potential energy
         six_r_potential_t_4 = six_r_c_1*six_r_potential_t + six_r_potential_t_2*six_r_s_1
         six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t_2 - six_r_potential_t*six_r_s_1
         six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_3 + six_r_potential_t_4*six_r_s_2
         six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_4 - six_r_potential_t_3*six_r_s_2
         six_r_potential_t_5 = six_r_b_in_spec2_y - six_r_bias_t_3
-        six_r_potential_t_6 = (
-        six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_x - six_r_J_5_t*six_r_h_5_in_spec5_y
-        )
-        six_r_potential_t_7 = (
-        six_r_d_Gamma_4_t*six_r_e_2_in_axes5_z - six_r_h_4_t*six_r_h_5_in_spec5_z
-        )
+        six_r_potential_t_6 = six_r_c_5*six_r_h_5_in_spec5_x - six_r_h_5_in_spec5_y*six_r_s_5
+        six_r_potential_t_7 = six_r_c_4*six_r_d_Gamma_4_t - six_r_h_5_in_spec5_z*six_r_s_4
         six_r_potential_t_8 = (
         six_r_h_2_in_spec2_x + six_r_b_in_spec2_x*six_r_link1_mass +
             six_r_c_2*six_r_h_1_in_spec1_x + six_r_c_3*six_r_h_3_in_spec3_x +
@@ -12217,7 +12060,7 @@ def _run_potential(m, X, q):
         six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z + six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
             + six_r_b_in_spec2_z*six_r_link1_mass + six_r_b_in_spec2_z*six_r_link2_mass +
             six_r_b_in_spec2_z*six_r_link3_mass + six_r_b_in_spec2_z*six_r_link4_mass +
-            six_r_d_Gamma_4_t*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z
+            six_r_c_4*six_r_h_5_in_spec5_z + six_r_d_Gamma_4_t*six_r_s_4
         )
         six_r_potential_t_11 = (
         six_r_g_in_axes1_y*six_r_potential_t_10 + six_r_g_in_axes2_x*six_r_potential_t_8 +
@@ -12295,12 +12138,6 @@ def _run_condition(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -12323,14 +12160,22 @@ def _run_condition(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
         six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
         six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
-        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
         six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
@@ -12343,9 +12188,9 @@ def _run_condition(m, X, q):
         six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
-        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
         six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
         six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
         six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
@@ -12372,25 +12217,19 @@ def _run_condition(m, X, q):
         axis_y_six_r_axes5_x*axis_z_six_r_axes5_y - axis_y_six_r_axes5_y*axis_z_six_r_axes5_x
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -12398,10 +12237,10 @@ def _run_condition(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -12410,17 +12249,17 @@ def _run_condition(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -12431,31 +12270,30 @@ def _run_condition(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -12488,11 +12326,9 @@ def _run_condition(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -12500,7 +12336,7 @@ def _run_condition(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -12512,16 +12348,15 @@ def _run_condition(m, X, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -12792,12 +12627,6 @@ def _run_closure_six_r(m, X, q):
         six_r_q_3 = q[[2, 7, 12, 17, 22, 27][leg]]
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
-        # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_t = sin(six_r_q_4)
-        # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_t = sin(six_r_q_5)
         # (six_r-S) from the base point to the connection point
         six_r_q_x = (
         R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y + R_xz*six_r_platform_point_z
@@ -12823,28 +12652,30 @@ def _run_closure_six_r(m, X, q):
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
+        # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
+        six_r_c_4 = cos(six_r_q_4)
+        # (six_r-s_4) sine of the angle of joint 4 from its reference direction
+        six_r_s_4 = sin(six_r_q_4)
+        # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
+        six_r_c_5 = cos(six_r_q_5)
+        # (six_r-s_5) sine of the angle of joint 5 from its reference direction
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = (
-        six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
-        )
-        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
         six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
         six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
-        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
-        six_r_r_3_in_axes5_x = (
-        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
-        )
-        six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
-        )
+        six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
         six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
@@ -12852,10 +12683,10 @@ def _run_closure_six_r(m, X, q):
         six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
         six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
         six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
-        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
-        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
-        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
         six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
@@ -12864,17 +12695,17 @@ def _run_closure_six_r(m, X, q):
         six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
         six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
         six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
-        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
-        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
-        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -12885,31 +12716,30 @@ def _run_closure_six_r(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
-            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
-            six_r_J_5_t*six_r_r_4_in_axes4_z)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -12942,11 +12772,9 @@ def _run_closure_six_r(m, X, q):
         six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
         six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
         six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
-        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
-        six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
-        )
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -12954,19 +12782,18 @@ def _run_closure_six_r(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        -six_r_J_5_t*six_r_n_m1_in_axes5_y - six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = six_r_J_5_t*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-residual) from the connection point as the links reach it to the platform's
         six_r_residual_t = (
         six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
@@ -12986,20 +12813,15 @@ def _run_closure_six_r(m, X, q):
         six_r_residual_t_7 = six_r_c_2*six_r_residual_t_4 - six_r_residual_t_3*six_r_s_2
         six_r_residual_t_8 = six_r_residual_t_6*six_r_s_3 - six_r_c_3*six_r_residual_t_7
         six_r_residual_t_9 = six_r_c_3*six_r_residual_t_6 + six_r_residual_t_7*six_r_s_3
-        six_r_residual_t_10 = (
-        six_r_h_4_t*six_r_residual_t_5 - six_r_e_2_in_axes5_z*six_r_residual_t_8
-        )
+        six_r_residual_t_10 = six_r_residual_t_5*six_r_s_4 - six_r_c_4*six_r_residual_t_8
         six_r_residual_in_axes5_x = (
-        six_r_J_5_t*six_r_residual_t_10 + six_r_e_4_in_axes5_x*six_r_residual_t_9 -
-            six_r_r_1_in_axes5_x
+        six_r_c_5*six_r_residual_t_9 + six_r_residual_t_10*six_r_s_5 - six_r_r_1_in_axes5_x
         )
         six_r_residual_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_residual_t_10 - six_r_r_1_in_axes5_y -
-            six_r_J_5_t*six_r_residual_t_9
+        six_r_c_5*six_r_residual_t_10 - six_r_r_1_in_axes5_y - six_r_residual_t_9*six_r_s_5
         )
         six_r_residual_in_axes5_z = (
-        six_r_e_2_in_axes5_z*six_r_residual_t_5 + six_r_h_4_t*six_r_residual_t_8 -
-            six_r_r_1_in_axes5_z
+        six_r_c_4*six_r_residual_t_5 + six_r_residual_t_8*six_r_s_4 - six_r_r_1_in_axes5_z
         )
         # (six_r-residual) from the connection point as the links reach it to the platform's
         out_residual_six_r[_residual_six_r_six_r[0][leg]] = six_r_residual_in_axes5_x

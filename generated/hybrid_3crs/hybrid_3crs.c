@@ -727,7 +727,6 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x -
             crs_platform_joint_offset_x;
         /* (crs-h_3) first moment of link 3 about the connection point */
-        const real inv_crs_size_t = 1/crs_size_t;
         const real crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x;
         const real crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass;
         const real crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass;
@@ -748,6 +747,8 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
             crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass;
         const real crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 -
             crs_J_3_t_4);
+        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_crs_size_t = 1/crs_size_t;
         /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
         const real crs_g_in_axes1_z = crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y +
             crs_base_frame_zx*gravity_z;
@@ -1590,30 +1591,29 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real crs_q_x, crs_q_y, crs_q_z, crs_h_3_t_7, crs_h_3_t_10, crs_h_3_t_11, crs_e_1_in_axes3_x,
-        crs_h_3_t_13, crs_h_3_in_axes1_x, crs_c_1, crs_s_1, crs_r_1_in_axes1_x, crs_v_1_in_axes3_z,
-        crs_v_3_in_axes1_x, axis_z_crs_axes3_x, axis_z_crs_axes3_y, axis_z_crs_axes3_z,
-        crs_w_1_in_axes3_z, crs_w_1_x, crs_w_1_y, crs_w_1_z, axis_y_crs_axes3_x, axis_y_crs_axes3_y,
-        axis_y_crs_axes3_z, axis_x_crs_axes3_x, axis_x_crs_axes3_y, axis_x_crs_axes3_z,
-        inv_crs_v_3_in_axes1_x, crs_w_2_in_axes3_x, crs_w_2_in_axes3_y, crs_w_2_x, crs_w_2_y,
-        crs_w_2_z, crs_g_in_axes1_x, crs_g_in_axes1_y, crs_g_in_axes3_x, crs_g_in_axes3_y, crs_mu_1_t,
-        crs_H_a_1_x, crs_H_a_1_y, crs_H_a_1_z, crs_H_a_2_x, crs_H_a_2_y, crs_H_a_2_z, crs_S_dot_t,
-        crs_S_dot_t_2, crs_S_dot_t_3, crs_qd_1, crs_qd_2_t, crs_qd_2, crs_W_3_in_axes3_yz,
-        crs_W_3_in_axes3_xz, crs_W_3_in_axes3_xy, crs_bias_in_axes3_x, crs_bias_in_axes3_y,
-        crs_bias_in_axes3_z, crs_mu_3_t_4, crs_mu_3_t_5, crs_mu_3_t_6, crs_c_t, crs_c_t_2, crs_c_t_3,
-        crs_S_ddot_in_axes3_x, crs_S_ddot_in_axes3_y, crs_S_ddot_in_axes3_z, crs_qdd_1, crs_qdd_2_t,
-        crs_qdd_2, crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3, crs_Q_xx, crs_Q_yy,
-        crs_Q_t_13, crs_Q_xy, crs_Q_xz, crs_Q_yz, crs_M_ta_t, crs_M_ta_t_2, crs_M_ta_t_3,
-        crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_7, crs_M_ta_t_8, crs_M_ta_t_9, crs_M_aa_t,
-        crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6, crs_acc_3_in_axes3_x,
-        crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z, crs_c_in_axes3_x, crs_c_in_axes3_y,
-        crs_c_in_axes3_z;
+    real crs_q_x, crs_q_y, crs_q_z, crs_rho2_1, crs_c_1, crs_s_1, crs_disc_2, crs_q_2, crs_c_3,
+        crs_s_3, crs_h_3_in_axes1_x, crs_r_1_in_axes1_x, crs_v_1_in_axes3_z, crs_v_3_in_axes1_x,
+        axis_z_crs_axes3_x, axis_z_crs_axes3_y, axis_z_crs_axes3_z, crs_w_1_in_axes3_z, crs_w_1_x,
+        crs_w_1_y, crs_w_1_z, axis_y_crs_axes3_x, axis_y_crs_axes3_y, axis_y_crs_axes3_z,
+        axis_x_crs_axes3_x, axis_x_crs_axes3_y, axis_x_crs_axes3_z, inv_crs_v_3_in_axes1_x,
+        crs_w_2_in_axes3_x, crs_w_2_in_axes3_y, crs_w_2_x, crs_w_2_y, crs_w_2_z, crs_g_in_axes1_x,
+        crs_g_in_axes1_y, crs_g_in_axes3_x, crs_g_in_axes3_y, crs_mu_1_t, crs_H_a_1_x, crs_H_a_1_y,
+        crs_H_a_1_z, crs_H_a_2_x, crs_H_a_2_y, crs_H_a_2_z, crs_S_dot_t, crs_S_dot_t_2, crs_S_dot_t_3,
+        crs_qd_1, crs_qd_2_t, crs_qd_2, crs_W_3_in_axes3_yz, crs_W_3_in_axes3_xz, crs_W_3_in_axes3_xy,
+        crs_bias_in_axes3_x, crs_bias_in_axes3_y, crs_bias_in_axes3_z, crs_mu_3_t_4, crs_mu_3_t_5,
+        crs_mu_3_t_6, crs_c_t, crs_c_t_2, crs_c_t_3, crs_S_ddot_in_axes3_x, crs_S_ddot_in_axes3_y,
+        crs_S_ddot_in_axes3_z, crs_qdd_1, crs_qdd_2_t, crs_qdd_2, crs_U_x, crs_U_y, crs_U_z,
+        crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3, crs_Q_xx, crs_Q_yy, crs_Q_t_13, crs_Q_xy, crs_Q_xz,
+        crs_Q_yz, crs_M_ta_t, crs_M_ta_t_2, crs_M_ta_t_3, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_7,
+        crs_M_ta_t_8, crs_M_ta_t_9, crs_M_aa_t, crs_M_aa_t_2, crs_M_aa_t_3, crs_M_aa_t_4,
+        crs_M_aa_t_5, crs_M_aa_t_6, crs_acc_3_in_axes3_x, crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z,
+        crs_c_in_axes3_x, crs_c_in_axes3_y, crs_c_in_axes3_z;
 } values_crs;
 
 INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
     *X, values_crs *v)
 {
-    /* (crs-h_3) first moment of link 3 about the connection point */
+    /* (crs-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1630,43 +1630,49 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->crs_q_z = R_zx*m->crs_platform_point_x[i] + R_zy*m->crs_platform_point_y[i] +
         R_zz*m->crs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real crs_h_3_t = t_x - m->crs_base_point_x[i] + v->crs_q_x;
+    const real crs_S_x = t_x - m->crs_base_point_x[i] + v->crs_q_x;
     const real t_y = X[1*w + j];
-    const real crs_h_3_t_2 = t_y - m->crs_base_point_y[i] + v->crs_q_y;
+    const real crs_S_y = t_y - m->crs_base_point_y[i] + v->crs_q_y;
     const real t_z = X[2*w + j];
-    const real crs_h_3_t_3 = t_z - m->crs_base_point_z[i] + v->crs_q_z;
-    const real crs_h_3_t_4 = m->crs_base_frame_xy[i]*crs_h_3_t +
-        m->crs_base_frame_yy[i]*crs_h_3_t_2 + m->crs_base_frame_zy[i]*crs_h_3_t_3;
-    const real crs_h_3_t_5 = m->crs_base_frame_xz[i]*crs_h_3_t +
-        m->crs_base_frame_yz[i]*crs_h_3_t_2 + m->crs_base_frame_zz[i]*crs_h_3_t_3;
-    const real crs_h_3_t_6 = m->crs_base_frame_xx[i]*crs_h_3_t +
-        m->crs_base_frame_yx[i]*crs_h_3_t_2 + m->crs_base_frame_zx[i]*crs_h_3_t_3;
-    v->crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5;
-    const real crs_h_3_t_8 = m->crs_branch_1[i]*root(v->crs_h_3_t_7);
-    const real crs_h_3_t_9 = crs_h_3_t_6 - m->crs_joint3_offset_x[i];
-    v->crs_h_3_t_10 = m->crs_size_t[i] - v->crs_h_3_t_7;
-    v->crs_h_3_t_11 = crs_h_3_t_9 + m->crs_branch_2[i]*root(v->crs_h_3_t_10);
-    const real crs_h_3_t_12 = crs_h_3_t_6 - m->crs_joint3_offset_x[i] - v->crs_h_3_t_11;
-    v->crs_e_1_in_axes3_x =
-        crs_h_3_t_12*m->crs_platform_joint_offset_x[i]*m->inv_crs_size_t[i];
-    v->crs_h_3_t_13 = crs_h_3_t_8*m->crs_platform_joint_offset_x[i]*m->inv_crs_size_t[i];
-    v->crs_h_3_in_axes1_x = m->crs_h_3_in_spec3_x[i]*v->crs_h_3_t_13 +
-        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i];
+    const real crs_S_z = t_z - m->crs_base_point_z[i] + v->crs_q_z;
+    const real crs_S_in_turn1_x = crs_S_x*m->crs_base_frame_xy[i] +
+        crs_S_y*m->crs_base_frame_yy[i] + crs_S_z*m->crs_base_frame_zy[i];
+    const real crs_S_in_turn1_y = crs_S_x*m->crs_base_frame_xz[i] +
+        crs_S_y*m->crs_base_frame_yz[i] + crs_S_z*m->crs_base_frame_zz[i];
+    const real crs_S_in_turn1_z = crs_S_x*m->crs_base_frame_xx[i] +
+        crs_S_y*m->crs_base_frame_yx[i] + crs_S_z*m->crs_base_frame_zx[i];
+    /* (crs-rho2_1) squared amplitude */
+    v->crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y;
+    /* (crs-root_1) root, with the sign of the branch */
+    const real crs_root_1 = m->crs_branch_1[i]*root(v->crs_rho2_1);
     /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_crs_h_3_t_7 = 1/v->crs_h_3_t_7;
-    v->crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7;
+    const real inv_crs_rho2_1 = 1/v->crs_rho2_1;
+    v->crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1;
     /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-    v->crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7;
+    v->crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1;
+    /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
+    const real crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - m->crs_joint3_offset_x[i];
+    /* (crs-disc_2) discriminant of the distance equation */
+    v->crs_disc_2 = m->crs_size_t[i] - v->crs_rho2_1;
+    /* (crs-q_2) displacement of joint 2 */
+    v->crs_q_2 = crs_from_centre_2_in_axes1_z + m->crs_branch_2[i]*root(v->crs_disc_2);
+    /* (crs-x_3) from the origin of joint 3 to the connection point */
+    const real crs_x_3_in_axes1_z = crs_S_in_turn1_z - m->crs_joint3_offset_x[i] - v->crs_q_2;
+    /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
+    v->crs_c_3 = m->crs_platform_joint_offset_x[i]*crs_x_3_in_axes1_z*m->inv_crs_size_t[i];
+    /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
+    v->crs_s_3 = m->crs_platform_joint_offset_x[i]*crs_root_1*m->inv_crs_size_t[i];
+    /* (crs-h_3) first moment of link 3 about the connection point */
+    v->crs_h_3_in_axes1_x = m->crs_h_3_in_spec3_x[i]*v->crs_s_3 +
+        v->crs_c_3*m->crs_h_3_in_spec3_y[i];
     /* (crs-r_1) from joint 1 to the connection point, along the links */
-    v->crs_r_1_in_axes1_x = v->crs_h_3_t_13*m->crs_platform_joint_offset_x[i];
-    const real crs_r_1_t = m->crs_joint3_offset_x[i] + v->crs_h_3_t_11;
-    const real crs_r_1_in_axes3_x = m->crs_platform_joint_offset_x[i] +
-        v->crs_e_1_in_axes3_x*crs_r_1_t;
+    v->crs_r_1_in_axes1_x = m->crs_platform_joint_offset_x[i]*v->crs_s_3;
+    const real crs_r_1_t = m->crs_joint3_offset_x[i] + v->crs_q_2;
+    const real crs_r_1_in_axes3_x = m->crs_platform_joint_offset_x[i] + v->crs_c_3*crs_r_1_t;
     /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-    v->crs_v_1_in_axes3_z = v->crs_h_3_t_13*crs_r_1_in_axes3_x -
-        v->crs_e_1_in_axes3_x*v->crs_h_3_t_13*crs_r_1_t;
+    v->crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*v->crs_s_3 - v->crs_c_3*crs_r_1_t*v->crs_s_3;
     /* (crs-v_3) velocity of the connection point per rate of joint 3 */
-    v->crs_v_3_in_axes1_x = v->crs_e_1_in_axes3_x*m->crs_platform_joint_offset_x[i];
+    v->crs_v_3_in_axes1_x = v->crs_c_3*m->crs_platform_joint_offset_x[i];
     /* (crs-w_1) reciprocal vector 1 */
     v->axis_z_crs_axes3_x = m->crs_base_frame_xz[i]*v->crs_c_1 -
         m->crs_base_frame_xy[i]*v->crs_s_1;
@@ -1679,14 +1685,14 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     v->crs_w_1_y = v->axis_z_crs_axes3_y*v->crs_w_1_in_axes3_z;
     v->crs_w_1_z = v->axis_z_crs_axes3_z*v->crs_w_1_in_axes3_z;
     /* (crs-w_2) reciprocal vector 2 */
-    const real crs_w_2_t = v->crs_c_1*v->crs_e_1_in_axes3_x;
-    const real crs_w_2_t_2 = v->crs_e_1_in_axes3_x*v->crs_s_1;
+    const real crs_w_2_t = v->crs_c_1*v->crs_c_3;
+    const real crs_w_2_t_2 = v->crs_c_3*v->crs_s_1;
     v->axis_y_crs_axes3_x = m->crs_base_frame_xy[i]*crs_w_2_t -
-        m->crs_base_frame_xx[i]*v->crs_h_3_t_13 + m->crs_base_frame_xz[i]*crs_w_2_t_2;
+        m->crs_base_frame_xx[i]*v->crs_s_3 + m->crs_base_frame_xz[i]*crs_w_2_t_2;
     v->axis_y_crs_axes3_y = m->crs_base_frame_yy[i]*crs_w_2_t -
-        m->crs_base_frame_yx[i]*v->crs_h_3_t_13 + m->crs_base_frame_yz[i]*crs_w_2_t_2;
+        m->crs_base_frame_yx[i]*v->crs_s_3 + m->crs_base_frame_yz[i]*crs_w_2_t_2;
     v->axis_y_crs_axes3_z = m->crs_base_frame_zy[i]*crs_w_2_t -
-        m->crs_base_frame_zx[i]*v->crs_h_3_t_13 + m->crs_base_frame_zz[i]*crs_w_2_t_2;
+        m->crs_base_frame_zx[i]*v->crs_s_3 + m->crs_base_frame_zz[i]*crs_w_2_t_2;
     v->axis_x_crs_axes3_x = v->axis_y_crs_axes3_y*v->axis_z_crs_axes3_z -
         v->axis_y_crs_axes3_z*v->axis_z_crs_axes3_y;
     v->axis_x_crs_axes3_y = v->axis_y_crs_axes3_z*v->axis_z_crs_axes3_x -
@@ -1695,8 +1701,8 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
         v->axis_y_crs_axes3_y*v->axis_z_crs_axes3_x;
     v->inv_crs_v_3_in_axes1_x = 1/v->crs_v_3_in_axes1_x;
     const real crs_w_2_t_3 = v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
-    v->crs_w_2_in_axes3_x = v->crs_e_1_in_axes3_x + v->crs_h_3_t_13*crs_w_2_t_3;
-    v->crs_w_2_in_axes3_y = v->crs_e_1_in_axes3_x*crs_w_2_t_3 - v->crs_h_3_t_13;
+    v->crs_w_2_in_axes3_x = v->crs_c_3 + v->crs_s_3*crs_w_2_t_3;
+    v->crs_w_2_in_axes3_y = v->crs_c_3*crs_w_2_t_3 - v->crs_s_3;
     v->crs_w_2_x = v->axis_x_crs_axes3_x*v->crs_w_2_in_axes3_x +
         v->axis_y_crs_axes3_x*v->crs_w_2_in_axes3_y;
     v->crs_w_2_y = v->axis_x_crs_axes3_y*v->crs_w_2_in_axes3_x +
@@ -1706,10 +1712,8 @@ INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const r
     /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->crs_g_in_axes1_x = m->crs_acc_3_t[i]*v->crs_c_1 + m->crs_acc_3_t_2[i]*v->crs_s_1;
     v->crs_g_in_axes1_y = m->crs_acc_3_t_2[i]*v->crs_c_1 - m->crs_acc_3_t[i]*v->crs_s_1;
-    v->crs_g_in_axes3_x = v->crs_g_in_axes1_x*v->crs_h_3_t_13 +
-        v->crs_e_1_in_axes3_x*m->crs_g_in_axes1_z[i];
-    v->crs_g_in_axes3_y = v->crs_e_1_in_axes3_x*v->crs_g_in_axes1_x -
-        m->crs_g_in_axes1_z[i]*v->crs_h_3_t_13;
+    v->crs_g_in_axes3_x = v->crs_g_in_axes1_x*v->crs_s_3 + v->crs_c_3*m->crs_g_in_axes1_z[i];
+    v->crs_g_in_axes3_y = v->crs_c_3*v->crs_g_in_axes1_x - m->crs_g_in_axes1_z[i]*v->crs_s_3;
     /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     v->crs_mu_1_t = v->crs_g_in_axes1_y*m->crs_h_2_in_spec1_y[i] -
         v->crs_g_in_axes1_x*m->crs_h_2_in_spec1_z[i];
@@ -1751,17 +1755,16 @@ INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->crs_qd_2 = crs_S_dot_x*m->crs_base_frame_xx[i] + crs_S_dot_y*m->crs_base_frame_yx[i] +
         crs_S_dot_z*m->crs_base_frame_zx[i] + v->crs_qd_2_t*v->crs_r_1_in_axes1_x;
     /* (crs-omega_1) angular velocity of link 1 */
-    const real crs_omega_1_in_axes3_x = v->crs_e_1_in_axes3_x*v->crs_qd_1;
-    const real crs_omega_1_in_axes3_y = -v->crs_h_3_t_13*v->crs_qd_1;
+    const real crs_omega_1_in_axes3_x = v->crs_c_3*v->crs_qd_1;
+    const real crs_omega_1_in_axes3_y = -v->crs_qd_1*v->crs_s_3;
     /* (crs-W_3) centripetal tensor of link 3 */
     v->crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*v->crs_qd_2_t;
     v->crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*v->crs_qd_2_t;
     v->crs_W_3_in_axes3_xy = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_y;
     /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-    const real crs_bias_t = crs_omega_1_in_axes3_x*(v->crs_h_3_t_11*v->crs_h_3_t_13 +
-        v->crs_h_3_t_13*m->crs_joint3_offset_x[i]) +
-        crs_omega_1_in_axes3_y*(v->crs_e_1_in_axes3_x*v->crs_h_3_t_11 +
-        v->crs_e_1_in_axes3_x*m->crs_joint3_offset_x[i]);
+    const real crs_bias_t = crs_omega_1_in_axes3_x*(m->crs_joint3_offset_x[i]*v->crs_s_3 +
+        v->crs_q_2*v->crs_s_3) + crs_omega_1_in_axes3_y*(v->crs_c_3*m->crs_joint3_offset_x[i]
+        + v->crs_c_3*v->crs_q_2);
     const real crs_bias_t_2 = m->crs_platform_joint_offset_x[i]*v->crs_qd_2_t;
     const real crs_bias_t_3 = -crs_omega_1_in_axes3_y*m->crs_platform_joint_offset_x[i];
     v->crs_bias_in_axes3_x = crs_bias_t_3*crs_omega_1_in_axes3_y - crs_bias_t_2*v->crs_qd_2_t
@@ -1770,8 +1773,7 @@ INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const
         crs_bias_t_3*crs_omega_1_in_axes3_x;
     v->crs_bias_in_axes3_z = crs_bias_t_2*crs_omega_1_in_axes3_x +
         v->crs_W_3_in_axes3_xz*m->crs_platform_joint_offset_x[i] -
-        2*v->crs_qd_2*(v->crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-        v->crs_h_3_t_13*crs_omega_1_in_axes3_x);
+        2*v->crs_qd_2*(v->crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*v->crs_s_3);
     /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
     const real crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
     const real crs_mu_3_t_2 = crs_omega_1_in_axes3_y*crs_omega_1_in_axes3_y;
@@ -1820,10 +1822,10 @@ INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *s, const real *A, va
     /* (crs-qdd_1) acceleration of joint 1 */
     v->crs_qdd_1 = crs_rel_in_axes3_z*v->crs_w_1_in_axes3_z;
     /* (crs-qdd_2) acceleration of joint 2 */
-    v->crs_qdd_2_t = v->inv_crs_v_3_in_axes1_x*(v->crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
-        v->crs_h_3_t_13*crs_rel_in_axes3_x);
-    v->crs_qdd_2 = v->crs_e_1_in_axes3_x*crs_rel_in_axes3_x -
-        v->crs_h_3_t_13*crs_rel_in_axes3_y + v->crs_qdd_2_t*v->crs_r_1_in_axes1_x;
+    v->crs_qdd_2_t = v->inv_crs_v_3_in_axes1_x*(v->crs_c_3*crs_rel_in_axes3_y +
+        crs_rel_in_axes3_x*v->crs_s_3);
+    v->crs_qdd_2 = v->crs_c_3*crs_rel_in_axes3_x - crs_rel_in_axes3_y*v->crs_s_3 +
+        v->crs_qdd_2_t*v->crs_r_1_in_axes1_x;
 }
 
 INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
@@ -1850,12 +1852,11 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     /* (crs-qdd_1_o) remainder of: acceleration of joint 1 */
     const real crs_qdd_1_o = crs_rel_o_in_axes3_z*v->crs_w_1_in_axes3_z;
     /* (crs-qdd_3_o) remainder of: acceleration of joint 3 */
-    const real crs_qdd_3_o =
-        v->inv_crs_v_3_in_axes1_x*(v->crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
-        v->crs_h_3_t_13*crs_rel_o_in_axes3_x);
+    const real crs_qdd_3_o = v->inv_crs_v_3_in_axes1_x*(v->crs_c_3*crs_rel_o_in_axes3_y +
+        crs_rel_o_in_axes3_x*v->crs_s_3);
     /* (crs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real crs_alpha_1_o_in_axes3_x = v->crs_e_1_in_axes3_x*crs_qdd_1_o;
-    const real crs_alpha_1_o_in_axes3_y = -v->crs_h_3_t_13*crs_qdd_1_o;
+    const real crs_alpha_1_o_in_axes3_x = v->crs_c_3*crs_qdd_1_o;
+    const real crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*v->crs_s_3;
     /* (crs-alpha_3_o) remainder of: angular acceleration of link 3 */
     const real crs_alpha_3_o_in_axes3_x = v->crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
     const real crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - v->crs_W_3_in_axes3_xz;
@@ -1865,8 +1866,8 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real crs_B_3_o_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_o_in_axes3_y;
     const real crs_B_3_o_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
     /* (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity */
-    const real crs_acc_2_o_in_axes1_z = v->crs_e_1_in_axes3_x*crs_rel_o_in_axes3_x -
-        m->crs_g_in_axes1_z[i] - v->crs_h_3_t_13*crs_rel_o_in_axes3_y +
+    const real crs_acc_2_o_in_axes1_z = v->crs_c_3*crs_rel_o_in_axes3_x -
+        m->crs_g_in_axes1_z[i] - crs_rel_o_in_axes3_y*v->crs_s_3 +
         crs_qdd_3_o*v->crs_r_1_in_axes1_x;
     /* (crs-f_2_o) remainder of: inertia force of link 2 less its weight */
     const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*m->crs_link2_mass[i];
@@ -1899,8 +1900,8 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
     const real crs_mu_1_o_in_axes1_z = m->crs_J_2_in_spec1_xx[i]*crs_qdd_1_o - v->crs_mu_1_t;
     /* (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
-    const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z +
-        v->crs_e_1_in_axes3_x*crs_mu_3_o_in_axes3_x - v->crs_h_3_t_13*crs_mu_3_o_in_axes3_y;
+    const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z + v->crs_c_3*crs_mu_3_o_in_axes3_x
+        - crs_mu_3_o_in_axes3_y*v->crs_s_3;
     /* (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the
        connection point */
     const real crs_c_o_t =
@@ -1908,12 +1909,12 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
         crs_mu_3_o_in_axes3_z);
     const real crs_c_o_in_axes3_x = v->crs_c_t -
         crs_alpha_1_o_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
-        v->crs_e_1_in_axes3_x*crs_f_2_o_in_axes1_z - crs_c_o_t*v->crs_h_3_t_13;
+        crs_B_3_o_in_axes3_xy*m->crs_h_3_in_spec3_y[i] - v->crs_c_3*crs_f_2_o_in_axes1_z -
+        crs_c_o_t*v->crs_s_3;
     const real crs_c_o_in_axes3_y = v->crs_c_t_2 +
         crs_alpha_1_o_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_o_in_axes1_z*v->crs_h_3_t_13
-        - crs_c_o_t*v->crs_e_1_in_axes3_x;
+        crs_B_3_o_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_o_in_axes1_z*v->crs_s_3 -
+        v->crs_c_3*crs_c_o_t;
     const real crs_c_o_in_axes3_z = v->crs_c_t_3 -
         crs_B_3_o_in_axes3_zx*m->crs_h_3_in_spec3_x[i] -
         crs_B_3_o_in_axes3_zy*m->crs_h_3_in_spec3_y[i] -
@@ -1934,44 +1935,43 @@ INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j
 INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
 {
     /* (crs-w_3) reciprocal vector 3 */
-    const real crs_w_3_in_axes3_x = v->crs_h_3_t_13*v->inv_crs_v_3_in_axes1_x;
-    const real crs_w_3_in_axes3_y = v->crs_e_1_in_axes3_x*v->inv_crs_v_3_in_axes1_x;
+    const real crs_w_3_in_axes3_x = v->crs_s_3*v->inv_crs_v_3_in_axes1_x;
+    const real crs_w_3_in_axes3_y = v->crs_c_3*v->inv_crs_v_3_in_axes1_x;
     /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
        inertia and weight */
     const real crs_d_Gamma_3_t = m->crs_J_3_in_spec3_zz[i]*v->inv_crs_v_3_in_axes1_x;
-    const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_h_3_t_13 -
+    const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_s_3 -
         m->crs_h_3_in_spec3_y[i];
     const real crs_d_Gamma_3_in_axes3_y = m->crs_h_3_in_spec3_x[i] +
-        crs_d_Gamma_3_t*v->crs_e_1_in_axes3_x;
+        v->crs_c_3*crs_d_Gamma_3_t;
     /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
        inertia and weight */
     const real crs_d_Gamma_2_t =
         m->crs_link2_mass[i]*v->crs_r_1_in_axes1_x*v->inv_crs_v_3_in_axes1_x;
-    const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*v->crs_e_1_in_axes3_x -
-        v->crs_h_3_t_13*m->crs_link2_mass[i];
+    const real crs_d_Gamma_2_in_axes3_y = v->crs_c_3*crs_d_Gamma_2_t -
+        m->crs_link2_mass[i]*v->crs_s_3;
     /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
        inertia and weight */
     const real crs_d_Gamma_1_in_axes1_x =
-        v->inv_crs_v_3_in_axes1_x*(m->crs_J_3_in_spec3_xz[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_yz[i]*v->crs_h_3_t_13) - m->crs_h_3_in_spec3_z[i];
+        v->inv_crs_v_3_in_axes1_x*(m->crs_J_3_in_spec3_xz[i]*v->crs_c_3 -
+        m->crs_J_3_in_spec3_yz[i]*v->crs_s_3) - m->crs_h_3_in_spec3_z[i];
     const real crs_d_Gamma_1_in_axes1_y = v->crs_h_3_in_axes1_x +
         v->crs_w_1_in_axes3_z*(m->crs_J_2_in_spec1_xx[i] +
-        v->crs_e_1_in_axes3_x*(m->crs_J_3_in_spec3_xx[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_xy[i]*v->crs_h_3_t_13) -
-        v->crs_h_3_t_13*(m->crs_J_3_in_spec3_xy[i]*v->crs_e_1_in_axes3_x -
-        m->crs_J_3_in_spec3_yy[i]*v->crs_h_3_t_13));
+        v->crs_c_3*(m->crs_J_3_in_spec3_xx[i]*v->crs_c_3 -
+        m->crs_J_3_in_spec3_xy[i]*v->crs_s_3) -
+        v->crs_s_3*(m->crs_J_3_in_spec3_xy[i]*v->crs_c_3 -
+        m->crs_J_3_in_spec3_yy[i]*v->crs_s_3));
     /* (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the
        leg's inertia and weight along all degrees of freedom */
     const real crs_d_G_in_axes3_zx =
-        crs_d_Gamma_1_in_axes1_x*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
+        crs_d_Gamma_1_in_axes1_x*v->crs_s_3*v->crs_w_1_in_axes3_z;
     const real crs_d_G_in_axes3_zy =
-        crs_d_Gamma_1_in_axes1_x*v->crs_e_1_in_axes3_x*v->crs_w_1_in_axes3_z;
+        v->crs_c_3*crs_d_Gamma_1_in_axes1_x*v->crs_w_1_in_axes3_z;
     /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
        without the mass at the connection point */
     const real crs_d_c_in_axes3_xx = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_x -
         crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-        v->crs_w_2_in_axes3_x*(v->crs_e_1_in_axes3_x*m->crs_link2_mass[i] +
-        crs_d_Gamma_2_t*v->crs_h_3_t_13);
+        v->crs_w_2_in_axes3_x*(v->crs_c_3*m->crs_link2_mass[i] + crs_d_Gamma_2_t*v->crs_s_3);
     const real crs_d_c_in_axes3_xy = m->crs_h_3_in_spec3_y[i]*crs_w_3_in_axes3_y -
         crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x -
         crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_x;
@@ -1979,8 +1979,8 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
         crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y -
         crs_d_Gamma_2_in_axes3_y*v->crs_w_2_in_axes3_y;
     const real crs_d_c_in_axes3_zz = -crs_d_Gamma_1_in_axes1_y*v->crs_w_1_in_axes3_z -
-        v->crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z -
-        m->crs_h_3_in_spec3_x[i]*v->crs_h_3_t_13*v->crs_w_1_in_axes3_z;
+        v->crs_c_3*m->crs_h_3_in_spec3_y[i]*v->crs_w_1_in_axes3_z -
+        m->crs_h_3_in_spec3_x[i]*v->crs_s_3*v->crs_w_1_in_axes3_z;
     /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
     const real crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy;
     const real crs_Q_t_2 = R(0.5)*crs_Q_t;
@@ -2032,8 +2032,8 @@ INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
 INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
 {
     /* (crs-alpha_1) angular acceleration of link 1 */
-    const real crs_alpha_1_in_axes3_x = v->crs_e_1_in_axes3_x*v->crs_qdd_1;
-    const real crs_alpha_1_in_axes3_y = -v->crs_h_3_t_13*v->crs_qdd_1;
+    const real crs_alpha_1_in_axes3_x = v->crs_c_3*v->crs_qdd_1;
+    const real crs_alpha_1_in_axes3_y = -v->crs_qdd_1*v->crs_s_3;
     /* (crs-alpha_3) angular acceleration of link 3 */
     const real crs_alpha_3_in_axes3_x = v->crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
     const real crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - v->crs_W_3_in_axes3_xz;
@@ -2073,18 +2073,18 @@ INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
     const real crs_mu_1_in_axes1_z = m->crs_J_2_in_spec1_xx[i]*v->crs_qdd_1 - v->crs_mu_1_t;
     /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
-    const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z +
-        v->crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x - v->crs_h_3_t_13*crs_mu_3_in_axes3_y;
+    const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + v->crs_c_3*crs_mu_3_in_axes3_x -
+        crs_mu_3_in_axes3_y*v->crs_s_3;
     /* (crs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real crs_c_t_4 = v->inv_crs_v_3_in_axes1_x*(crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x
         + crs_mu_3_in_axes3_z);
     v->crs_c_in_axes3_x = v->crs_c_t - crs_alpha_1_in_axes3_y*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_in_axes3_xy*m->crs_h_3_in_spec3_y[i] -
-        v->crs_e_1_in_axes3_x*crs_f_2_in_axes1_z - crs_c_t_4*v->crs_h_3_t_13;
+        crs_B_3_in_axes3_xy*m->crs_h_3_in_spec3_y[i] - v->crs_c_3*crs_f_2_in_axes1_z -
+        crs_c_t_4*v->crs_s_3;
     v->crs_c_in_axes3_y = v->crs_c_t_2 + crs_alpha_1_in_axes3_x*m->crs_h_3_in_spec3_z[i] -
-        crs_B_3_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_in_axes1_z*v->crs_h_3_t_13 -
-        crs_c_t_4*v->crs_e_1_in_axes3_x;
+        crs_B_3_in_axes3_yx*m->crs_h_3_in_spec3_x[i] + crs_f_2_in_axes1_z*v->crs_s_3 -
+        v->crs_c_3*crs_c_t_4;
     v->crs_c_in_axes3_z = v->crs_c_t_3 - crs_B_3_in_axes3_zx*m->crs_h_3_in_spec3_x[i] -
         crs_B_3_in_axes3_zy*m->crs_h_3_in_spec3_y[i] -
         crs_N_1_in_axes1_z*v->crs_w_1_in_axes3_z;
@@ -2196,7 +2196,7 @@ INLINE void any_entries_crs(size_t k, size_t count, const values_crs *v, real *o
 
 INLINE void any_singular_crs(const prepared *m, size_t i, size_t k, const values_crs *v, real *o)
 {
-    o[k] = UNLESS(magnitude(v->crs_h_3_t_7) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) +
+    o[k] = UNLESS(magnitude(v->crs_rho2_1) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]) +
         UNLESS(magnitude(v->crs_v_1_in_axes3_z) > TOLERANCE*m->crs_size[i]) +
         UNLESS(magnitude(v->crs_v_3_in_axes1_x) > TOLERANCE*m->crs_size[i]);
 }
@@ -2276,7 +2276,7 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     any_sums_crs(k, count, add, &v, terms);
     any_sums_crs_2(k, count, add, &v, terms + 20*count);
     any_entries_crs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
         (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
@@ -2467,7 +2467,7 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_crs_X(m, w, i, j, s, X, &v);
     stage_crs_M_dynamics(m, i, &v);
     any_sums_crs(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 1*count);
 }
 
@@ -2636,7 +2636,7 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     stage_crs_V_X(m, w, i, j, V, &v);
     stage_crs_Z_dynamics(m, w, i, j, V, &v);
     any_sums_crs_2(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 1*count);
 }
 
@@ -2731,7 +2731,7 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_t k
     values_crs v;
     stage_crs_X(m, w, i, j, s, X, &v);
     any_entries_crs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
         (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
@@ -2873,7 +2873,7 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t i, size_t j, s
     gather(&terms[4*count + k], add, crs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, crs_R_a_t_3);  /* R_a_z_of_legs */
     any_entries_crs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 13*count);
 }
 
@@ -2992,17 +2992,16 @@ INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t i, s
     /* (crs-q_1) displacement of joint 1 */
     const real crs_q_1 = angle(v.crs_s_1, v.crs_c_1);
     /* (crs-q_3) displacement of joint 3 */
-    const real crs_q_3 = angle(v.crs_h_3_t_13, v.crs_e_1_in_axes3_x);
+    const real crs_q_3 = angle(v.crs_s_3, v.crs_c_3);
     /* (crs-q_1) */
     o[0*count + k] = crs_q_1;
     /* (crs-q_2) displacement of joint 2 */
-    o[1*count + k] = v.crs_h_3_t_11;
+    o[1*count + k] = v.crs_q_2;
     /* (crs-q_3) */
     o[2*count + k] = crs_q_3;
-    o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
-    o[5*count + k] = crs_q_1 + (v.crs_h_3_t_11 + crs_q_3);
+    o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
+    o[5*count + k] = crs_q_1 + (v.crs_q_2 + crs_q_3);
 }
 
 INLINE void inverse_kinematics_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count,
@@ -3068,7 +3067,7 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t i, size_t j
     o[1*count + k] = v.crs_qd_2;
     /* (crs-qd_3) rate of joint 3 */
     o[2*count + k] = v.crs_qd_2_t;
-    o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.crs_qd_1 + (v.crs_qd_2 + v.crs_qd_2_t);
 }
@@ -3138,7 +3137,7 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = v.crs_qdd_2;
     /* (crs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.crs_qdd_2_t;
-    o[3*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.crs_qdd_1 + (v.crs_qdd_2 + v.crs_qdd_2_t);
 }
@@ -3231,7 +3230,7 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t i, size_t j, size_
     o[6*count + k] = v.crs_w_2_x;
     o[7*count + k] = v.crs_w_2_y;
     o[8*count + k] = v.crs_w_2_z;
-    o[9*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[9*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 10*count);
 }
 
@@ -3294,17 +3293,15 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     const real crs_potential_t_3 = v.crs_g_in_axes1_y*(m->crs_h_2_in_spec1_z[i] +
         m->crs_h_3_in_spec3_z[i] + m->crs_link2_mass[i]*(v.crs_c_1*m->crs_potential_t_2[i] -
         m->crs_potential_t[i]*v.crs_s_1)) + m->crs_g_in_axes1_z[i]*(m->crs_h_2_in_spec1_x[i] +
-        m->crs_link2_mass[i]*(m->crs_b_in_axes1_z[i] + v.crs_h_3_t_11) -
-        m->crs_h_3_in_spec3_y[i]*v.crs_h_3_t_13 +
-        v.crs_e_1_in_axes3_x*m->crs_h_3_in_spec3_x[i]) +
+        m->crs_link2_mass[i]*(m->crs_b_in_axes1_z[i] + v.crs_q_2) -
+        m->crs_h_3_in_spec3_y[i]*v.crs_s_3 + v.crs_c_3*m->crs_h_3_in_spec3_x[i]) +
         v.crs_g_in_axes1_x*(m->crs_h_2_in_spec1_y[i] +
         m->crs_link2_mass[i]*(v.crs_c_1*m->crs_potential_t[i] +
         m->crs_potential_t_2[i]*v.crs_s_1) + v.crs_h_3_in_axes1_x);
     /* (potential) */
     gather(&terms[0*count + k], add, crs_potential_t_3);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.crs_h_3_t_7) >
-        TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
+    o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*m->crs_size_t_2[i]);
 }
 
 INLINE void potential_after(size_t w, size_t k, const real *s, const real *sums, real *potential)
@@ -3370,7 +3367,7 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     stage_crs_X(m, w, i, j, s, X, &v);
     /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real crs_pivot_size = magnitude(v.crs_h_3_t_7);
+    const real crs_pivot_size = magnitude(v.crs_rho2_1);
     const real crs_pivot_size_2 = magnitude(v.crs_v_1_in_axes3_z);
     const real crs_pivot_size_3 = magnitude(v.crs_v_3_in_axes1_x);
     const real crs_least_pivots = lesser(lesser(root(crs_pivot_size*m->inv_crs_size_t_2[i]),
@@ -3386,13 +3383,13 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t i, size_t j, 
     any_entries_crs(k, count, &v, o);
     /* (crs-G) */
     o[12*count + k] = crs_least_pivots;
-    o[13*count + k] = v.crs_h_3_t_10;
-    o[14*count + k] = UNLESS(v.crs_h_3_t_10 >= 0);
+    o[13*count + k] = v.crs_disc_2;
+    o[14*count + k] = UNLESS(v.crs_disc_2 >= 0);
     any_singular_crs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + ((v.crs_H_a_1_x +
         v.crs_H_a_1_y) + (v.crs_H_a_1_z + v.crs_w_2_x))) + ((v.crs_w_2_y + (v.crs_w_2_z +
         v.crs_H_a_2_x)) + ((v.crs_H_a_2_y + v.crs_H_a_2_z) + (crs_least_pivots +
-        v.crs_h_3_t_10)));
+        v.crs_disc_2)));
 }
 
 INLINE void condition_place_crs(size_t w, size_t i, size_t k, size_t at, size_t count, const real

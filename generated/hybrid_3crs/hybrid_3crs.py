@@ -562,7 +562,6 @@ def _prepare(p):
     # (crs-rho_tip_3) connection point to the centre of mass of link 3
     crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x
     # (crs-h_3) first moment of link 3 about the connection point
-    inv_crs_size_t = 1.0/crs_size_t
     crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x
     crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass
     crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass
@@ -583,6 +582,8 @@ def _prepare(p):
     crs_link3_inertia_yz - crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass
     )
     crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4)
+    # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_crs_size_t = 1.0/crs_size_t
     # (crs-acc_2) acceleration of the reference point of link 2, less gravity
     crs_g_in_axes1_z = (
     crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y + crs_base_frame_zx*gravity_z
@@ -1964,7 +1965,7 @@ def _run_dynamics(m, X, V):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -1974,37 +1975,41 @@ def _run_dynamics(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_in_axes1_x = (
-        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
-        )
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-h_3) first moment of link 3 about the connection point
+        crs_h_3_in_axes1_x = crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -2013,15 +2018,13 @@ def _run_dynamics(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -2031,19 +2034,16 @@ def _run_dynamics(m, X, V):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -2056,14 +2056,14 @@ def _run_dynamics(m, X, V):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_v_3_in_axes1_x
-        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_x = crs_s_3*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_y = crs_c_3*inv_crs_v_3_in_axes1_x
         # (crs-qd_1) rate of joint 1
         crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
@@ -2081,8 +2081,8 @@ def _run_dynamics(m, X, V):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
@@ -2102,9 +2102,8 @@ def _run_dynamics(m, X, V):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
-            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
-            crs_e_1_in_axes3_x*crs_joint3_offset_x)
+        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
+            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -2117,8 +2116,7 @@ def _run_dynamics(m, X, V):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-            crs_h_3_t_13*crs_omega_1_in_axes3_x)
+            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
         # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
@@ -2128,12 +2126,11 @@ def _run_dynamics(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
-            crs_h_3_t_13*crs_rel_o_in_axes3_x)
+        inv_crs_v_3_in_axes1_x*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
-        crs_alpha_1_o_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1_o
-        crs_alpha_1_o_in_axes3_y = -crs_h_3_t_13*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
         # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
@@ -2144,16 +2141,16 @@ def _run_dynamics(m, X, V):
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
-        crs_e_1_in_axes3_x*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x -
-            crs_g_in_axes1_z - crs_h_3_t_13*crs_rel_o_in_axes3_y
+        crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
+            crs_rel_o_in_axes3_y*crs_s_3
         )
         # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
-        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_g_in_axes3_x = crs_c_3*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_s_3
+        crs_g_in_axes3_y = crs_c_3*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_s_3
         # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - crs_g_in_axes3_x
         crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y - crs_g_in_axes3_y
@@ -2191,37 +2188,32 @@ def _run_dynamics(m, X, V):
         )
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_v_3_in_axes1_x
-        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
-        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
+        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_s_3 - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_c_3*crs_d_Gamma_3_t
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         crs_mu_1_t = crs_g_in_axes1_y*crs_h_2_in_spec1_y - crs_g_in_axes1_x*crs_h_2_in_spec1_z
         # (crs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their reference points
         crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_mu_1_t
         # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
-        crs_mu_1_o_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_o_in_axes3_x -
-            crs_h_3_t_13*crs_mu_3_o_in_axes3_y
+        crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
         )
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
         crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_d_Gamma_2_in_axes3_y = (
-        crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
-        )
+        crs_d_Gamma_2_in_axes3_y = crs_c_3*crs_d_Gamma_2_t - crs_link2_mass*crs_s_3
         # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         crs_d_Gamma_1_in_axes1_x = (
-        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
+        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_c_3 - crs_J_3_in_spec3_yz*crs_s_3) -
+            crs_h_3_in_spec3_z
         )
         crs_d_Gamma_1_in_axes1_y = (
         crs_h_3_in_axes1_x + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
-            crs_e_1_in_axes3_x*(crs_J_3_in_spec3_xx*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_xy*crs_h_3_t_13) -
-            crs_h_3_t_13*(crs_J_3_in_spec3_xy*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_yy*crs_h_3_t_13))
+            crs_c_3*(crs_J_3_in_spec3_xx*crs_c_3 - crs_J_3_in_spec3_xy*crs_s_3) -
+            crs_s_3*(crs_J_3_in_spec3_xy*crs_c_3 - crs_J_3_in_spec3_yy*crs_s_3))
         )
         # (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_h_3_t_13*crs_w_1_in_axes3_z
-        crs_d_G_in_axes3_zy = crs_d_Gamma_1_in_axes1_x*crs_e_1_in_axes3_x*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_s_3*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zy = crs_c_3*crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
         crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
         crs_c_t_2 = crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3)
@@ -2229,7 +2221,7 @@ def _run_dynamics(m, X, V):
         # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         crs_d_c_in_axes3_xx = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_d_Gamma_2_t*crs_h_3_t_13 + crs_e_1_in_axes3_x*crs_link2_mass)
+            crs_w_2_in_axes3_x*(crs_c_3*crs_link2_mass + crs_d_Gamma_2_t*crs_s_3)
         )
         crs_d_c_in_axes3_xy = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
@@ -2241,8 +2233,8 @@ def _run_dynamics(m, X, V):
         )
         crs_d_c_in_axes3_zz = (
         -crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z -
-            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
-            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
+            crs_c_3*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
+            crs_h_3_in_spec3_x*crs_s_3*crs_w_1_in_axes3_z
         )
         # (crs-c_o) remainder of: leg force on the platform without actuation and without the mass at the connection point
         crs_c_o_t = (
@@ -2250,13 +2242,12 @@ def _run_dynamics(m, X, V):
         )
         crs_c_o_in_axes3_x = (
         crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
-            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_o_t*crs_h_3_t_13 -
-            crs_e_1_in_axes3_x*crs_f_2_o_in_axes1_z
+            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_o_in_axes1_z -
+            crs_c_o_t*crs_s_3
         )
         crs_c_o_in_axes3_y = (
-        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_f_2_o_in_axes1_z*crs_h_3_t_13 - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x -
-            crs_c_o_t*crs_e_1_in_axes3_x
+        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_o_in_axes1_z*crs_s_3 -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_o_t
         )
         crs_c_o_in_axes3_z = (
         crs_c_t_3 - crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
@@ -2344,7 +2335,7 @@ def _run_dynamics(m, X, V):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -2554,7 +2545,7 @@ def _run_M(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -2564,66 +2555,65 @@ def _run_M(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_in_axes1_x = (
-        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
-        )
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-h_3) first moment of link 3 about the connection point
+        crs_h_3_in_axes1_x = crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
         axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -2636,39 +2626,35 @@ def _run_M(m, X):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         # (crs-w_3) reciprocal vector 3
-        crs_w_3_in_axes3_x = crs_h_3_t_13*inv_crs_v_3_in_axes1_x
-        crs_w_3_in_axes3_y = crs_e_1_in_axes3_x*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_x = crs_s_3*inv_crs_v_3_in_axes1_x
+        crs_w_3_in_axes3_y = crs_c_3*inv_crs_v_3_in_axes1_x
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_v_3_in_axes1_x
-        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_h_3_t_13 - crs_h_3_in_spec3_y
-        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_e_1_in_axes3_x
+        crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*crs_s_3 - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_c_3*crs_d_Gamma_3_t
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
         crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_d_Gamma_2_in_axes3_y = (
-        crs_d_Gamma_2_t*crs_e_1_in_axes3_x - crs_h_3_t_13*crs_link2_mass
-        )
+        crs_d_Gamma_2_in_axes3_y = crs_c_3*crs_d_Gamma_2_t - crs_link2_mass*crs_s_3
         # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         crs_d_Gamma_1_in_axes1_x = (
-        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_yz*crs_h_3_t_13) - crs_h_3_in_spec3_z
+        inv_crs_v_3_in_axes1_x*(crs_J_3_in_spec3_xz*crs_c_3 - crs_J_3_in_spec3_yz*crs_s_3) -
+            crs_h_3_in_spec3_z
         )
         crs_d_Gamma_1_in_axes1_y = (
         crs_h_3_in_axes1_x + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
-            crs_e_1_in_axes3_x*(crs_J_3_in_spec3_xx*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_xy*crs_h_3_t_13) -
-            crs_h_3_t_13*(crs_J_3_in_spec3_xy*crs_e_1_in_axes3_x -
-            crs_J_3_in_spec3_yy*crs_h_3_t_13))
+            crs_c_3*(crs_J_3_in_spec3_xx*crs_c_3 - crs_J_3_in_spec3_xy*crs_s_3) -
+            crs_s_3*(crs_J_3_in_spec3_xy*crs_c_3 - crs_J_3_in_spec3_yy*crs_s_3))
         )
         # (crs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_h_3_t_13*crs_w_1_in_axes3_z
-        crs_d_G_in_axes3_zy = crs_d_Gamma_1_in_axes1_x*crs_e_1_in_axes3_x*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zx = crs_d_Gamma_1_in_axes1_x*crs_s_3*crs_w_1_in_axes3_z
+        crs_d_G_in_axes3_zy = crs_c_3*crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z
         # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         crs_d_c_in_axes3_xx = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_d_Gamma_2_t*crs_h_3_t_13 + crs_e_1_in_axes3_x*crs_link2_mass)
+            crs_w_2_in_axes3_x*(crs_c_3*crs_link2_mass + crs_d_Gamma_2_t*crs_s_3)
         )
         crs_d_c_in_axes3_xy = (
         crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
@@ -2680,8 +2666,8 @@ def _run_M(m, X):
         )
         crs_d_c_in_axes3_zz = (
         -crs_d_Gamma_1_in_axes1_y*crs_w_1_in_axes3_z -
-            crs_e_1_in_axes3_x*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
-            crs_h_3_in_spec3_x*crs_h_3_t_13*crs_w_1_in_axes3_z
+            crs_c_3*crs_h_3_in_spec3_y*crs_w_1_in_axes3_z -
+            crs_h_3_in_spec3_x*crs_s_3*crs_w_1_in_axes3_z
         )
         # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
         crs_Q_t = crs_d_c_in_axes3_xx - crs_d_c_in_axes3_yy
@@ -2740,7 +2726,7 @@ def _run_M(m, X):
         crs_M_aa_t_5 = crs_M_ta_t_2*crs_q_z + crs_M_ta_t_9*crs_q_x
         crs_M_aa_t_6 = crs_M_ta_t_2*crs_q_y + crs_M_ta_t_6*crs_q_x
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -2934,7 +2920,7 @@ def _run_Z(m, X, V):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -2944,34 +2930,39 @@ def _run_Z(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -2980,34 +2971,29 @@ def _run_Z(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
         axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -3036,8 +3022,8 @@ def _run_Z(m, X, V):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
@@ -3057,9 +3043,8 @@ def _run_Z(m, X, V):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
-            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
-            crs_e_1_in_axes3_x*crs_joint3_offset_x)
+        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
+            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -3072,8 +3057,7 @@ def _run_Z(m, X, V):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-            crs_h_3_t_13*crs_omega_1_in_axes3_x)
+            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
         # (crs-rel_o) remainder of: acceleration of the connection point left to the joint accelerations
         crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
@@ -3083,12 +3067,11 @@ def _run_Z(m, X, V):
         crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder of: acceleration of joint 3
         crs_qdd_3_o = (
-        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_o_in_axes3_y +
-            crs_h_3_t_13*crs_rel_o_in_axes3_x)
+        inv_crs_v_3_in_axes1_x*(crs_c_3*crs_rel_o_in_axes3_y + crs_rel_o_in_axes3_x*crs_s_3)
         )
         # (crs-alpha_1_o) remainder of: angular acceleration of link 1
-        crs_alpha_1_o_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1_o
-        crs_alpha_1_o_in_axes3_y = -crs_h_3_t_13*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_x = crs_c_3*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*crs_s_3
         # (crs-alpha_3_o) remainder of: angular acceleration of link 3
         crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
         crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - crs_W_3_in_axes3_xz
@@ -3099,16 +3082,16 @@ def _run_Z(m, X, V):
         crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder of: acceleration of the reference point of link 2, less gravity
         crs_acc_2_o_in_axes1_z = (
-        crs_e_1_in_axes3_x*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x -
-            crs_g_in_axes1_z - crs_h_3_t_13*crs_rel_o_in_axes3_y
+        crs_c_3*crs_rel_o_in_axes3_x + crs_qdd_3_o*crs_r_1_in_axes1_x - crs_g_in_axes1_z -
+            crs_rel_o_in_axes3_y*crs_s_3
         )
         # (crs-f_2_o) remainder of: inertia force of link 2 less its weight
         crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
-        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_g_in_axes3_x = crs_c_3*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_s_3
+        crs_g_in_axes3_y = crs_c_3*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_s_3
         # (crs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - crs_g_in_axes3_x
         crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y - crs_g_in_axes3_y
@@ -3150,8 +3133,7 @@ def _run_Z(m, X, V):
         crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_mu_1_t
         # (crs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_o_in_axes1_z = (
-        crs_mu_1_o_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_o_in_axes3_x -
-            crs_h_3_t_13*crs_mu_3_o_in_axes3_y
+        crs_mu_1_o_in_axes1_z + crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*crs_s_3
         )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
         crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
@@ -3163,13 +3145,12 @@ def _run_Z(m, X, V):
         )
         crs_c_o_in_axes3_x = (
         crs_c_t - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
-            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_o_t*crs_h_3_t_13 -
-            crs_e_1_in_axes3_x*crs_f_2_o_in_axes1_z
+            crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_o_in_axes1_z -
+            crs_c_o_t*crs_s_3
         )
         crs_c_o_in_axes3_y = (
-        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_f_2_o_in_axes1_z*crs_h_3_t_13 - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x -
-            crs_c_o_t*crs_e_1_in_axes3_x
+        crs_c_t_2 + crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_o_in_axes1_z*crs_s_3 -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_o_t
         )
         crs_c_o_in_axes3_z = (
         crs_c_t_3 - crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
@@ -3193,7 +3174,7 @@ def _run_Z(m, X, V):
         crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x
         crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -3274,7 +3255,7 @@ def _run_H(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -3284,44 +3265,47 @@ def _run_H(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -3331,19 +3315,16 @@ def _run_H(m, X):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -3356,8 +3337,8 @@ def _run_H(m, X):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
@@ -3370,7 +3351,7 @@ def _run_H(m, X):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -3546,7 +3527,7 @@ def _run_required(m, X, V, A):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -3556,34 +3537,39 @@ def _run_required(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -3592,15 +3578,13 @@ def _run_required(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -3610,19 +3594,16 @@ def _run_required(m, X, V, A):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -3635,8 +3616,8 @@ def _run_required(m, X, V, A):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
@@ -3657,8 +3638,8 @@ def _run_required(m, X, V, A):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
@@ -3681,9 +3662,8 @@ def _run_required(m, X, V, A):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
-            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
-            crs_e_1_in_axes3_x*crs_joint3_offset_x)
+        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
+            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -3696,8 +3676,7 @@ def _run_required(m, X, V, A):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-            crs_h_3_t_13*crs_omega_1_in_axes3_x)
+            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
         crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
@@ -3707,16 +3686,14 @@ def _run_required(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
-            crs_h_3_t_13*crs_rel_in_axes3_x)
+        inv_crs_v_3_in_axes1_x*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
         )
         crs_qdd_2 = (
-        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_rel_in_axes3_y
+        crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x - crs_rel_in_axes3_y*crs_s_3
         )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1
-        crs_alpha_1_in_axes3_y = -crs_h_3_t_13*crs_qdd_1
+        crs_alpha_1_in_axes3_x = crs_c_3*crs_qdd_1
+        crs_alpha_1_in_axes3_y = -crs_qdd_1*crs_s_3
         # (crs-alpha_3) angular acceleration of link 3
         crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
         crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - crs_W_3_in_axes3_xz
@@ -3732,8 +3709,8 @@ def _run_required(m, X, V, A):
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
-        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_g_in_axes3_x = crs_c_3*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_s_3
+        crs_g_in_axes3_y = crs_c_3*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_s_3
         crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - crs_g_in_axes3_x
         crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_y
@@ -3768,8 +3745,7 @@ def _run_required(m, X, V, A):
         crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 - crs_mu_1_t
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_in_axes1_z = (
-        crs_mu_1_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x -
-            crs_h_3_t_13*crs_mu_3_in_axes3_y
+        crs_mu_1_in_axes1_z + crs_c_3*crs_mu_3_in_axes3_x - crs_mu_3_in_axes3_y*crs_s_3
         )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
         crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
@@ -3780,12 +3756,12 @@ def _run_required(m, X, V, A):
         )
         crs_c_in_axes3_x = (
         crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
-            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_t_4*crs_h_3_t_13 -
-            crs_e_1_in_axes3_x*crs_f_2_in_axes1_z
+            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_in_axes1_z -
+            crs_c_t_4*crs_s_3
         )
         crs_c_in_axes3_y = (
-        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_h_3_t_13 -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t_4*crs_e_1_in_axes3_x
+        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_s_3 -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_t_4
         )
         crs_c_in_axes3_z = (
         crs_c_t_3 - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
@@ -3816,7 +3792,7 @@ def _run_required(m, X, V, A):
         crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
         crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -3913,7 +3889,7 @@ def _run_inverse_kinematics(m, X):
             crs_branch_2, crs_joint3_offset_x, crs_platform_joint_offset_x, crs_platform_point_x,
             crs_platform_point_y, crs_platform_point_z, crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -3923,45 +3899,48 @@ def _run_inverse_kinematics(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
         # (crs-q_1) displacement of joint 1
         crs_q_1 = atan2(crs_s_1, crs_c_1)
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-q_3) displacement of joint 3
-        crs_q_3 = atan2(crs_h_3_t_13, crs_e_1_in_axes3_x)
-        ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0)
-        )
+        crs_q_3 = atan2(crs_s_3, crs_c_3)
+        ok = ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0)
         # (crs-q_1) displacement of joint 1
         out_q[_q_crs[0][leg]] = crs_q_1
         # (crs-q_2) displacement of joint 2
-        out_q[_q_crs[1][leg]] = crs_h_3_t_11
+        out_q[_q_crs[1][leg]] = crs_q_2
         # (crs-q_3) displacement of joint 3
         out_q[_q_crs[2][leg]] = crs_q_3
     return ok, (out_q,)
@@ -4030,7 +4009,7 @@ def _run_joint_rates(m, X, V):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4040,34 +4019,39 @@ def _run_joint_rates(m, X, V):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -4076,15 +4060,13 @@ def _run_joint_rates(m, X, V):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
@@ -4106,7 +4088,7 @@ def _run_joint_rates(m, X, V):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -4212,7 +4194,7 @@ def _run_joint_accelerations(m, X, V, A):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4222,34 +4204,39 @@ def _run_joint_accelerations(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -4258,34 +4245,29 @@ def _run_joint_accelerations(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
         axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1
         crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -4314,8 +4296,8 @@ def _run_joint_accelerations(m, X, V, A):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
         # (crs-S_ddot) acceleration of the connection point
@@ -4336,9 +4318,8 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
-            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
-            crs_e_1_in_axes3_x*crs_joint3_offset_x)
+        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
+            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -4351,8 +4332,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-            crs_h_3_t_13*crs_omega_1_in_axes3_x)
+            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
         crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
@@ -4362,15 +4342,13 @@ def _run_joint_accelerations(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
-            crs_h_3_t_13*crs_rel_in_axes3_x)
+        inv_crs_v_3_in_axes1_x*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
         )
         crs_qdd_2 = (
-        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_rel_in_axes3_y
+        crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x - crs_rel_in_axes3_y*crs_s_3
         )
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -4481,7 +4459,7 @@ def _run_legs(m, X, V, A):
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4491,34 +4469,39 @@ def _run_legs(m, X, V, A):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
         crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
         crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
@@ -4527,15 +4510,13 @@ def _run_legs(m, X, V, A):
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -4545,19 +4526,16 @@ def _run_legs(m, X, V, A):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -4570,8 +4548,8 @@ def _run_legs(m, X, V, A):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
@@ -4592,8 +4570,8 @@ def _run_legs(m, X, V, A):
             crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*crs_r_1_in_axes1_x
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qd_1
-        crs_omega_1_in_axes3_y = -crs_h_3_t_13*crs_qd_1
+        crs_omega_1_in_axes3_x = crs_c_3*crs_qd_1
+        crs_omega_1_in_axes3_y = -crs_qd_1*crs_s_3
         # (crs-W_3) centripetal tensor of link 3
         crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t
         crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t
@@ -4616,9 +4594,8 @@ def _run_legs(m, X, V, A):
         )
         # (crs-bias) acceleration of the connection point at zero joint accelerations
         crs_bias_t = (
-        crs_omega_1_in_axes3_x*(crs_h_3_t_11*crs_h_3_t_13 + crs_h_3_t_13*crs_joint3_offset_x) +
-            crs_omega_1_in_axes3_y*(crs_e_1_in_axes3_x*crs_h_3_t_11 +
-            crs_e_1_in_axes3_x*crs_joint3_offset_x)
+        crs_omega_1_in_axes3_x*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3) +
+            crs_omega_1_in_axes3_y*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2)
         )
         crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
         crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x
@@ -4631,8 +4608,7 @@ def _run_legs(m, X, V, A):
         )
         crs_bias_in_axes3_z = (
         crs_W_3_in_axes3_xz*crs_platform_joint_offset_x + crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2.0*crs_qd_2*(crs_e_1_in_axes3_x*crs_omega_1_in_axes3_y +
-            crs_h_3_t_13*crs_omega_1_in_axes3_x)
+            2.0*crs_qd_2*(crs_c_3*crs_omega_1_in_axes3_y + crs_omega_1_in_axes3_x*crs_s_3)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
         crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
@@ -4642,16 +4618,14 @@ def _run_legs(m, X, V, A):
         crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_2) acceleration of joint 2
         crs_qdd_2_t = (
-        inv_crs_v_3_in_axes1_x*(crs_e_1_in_axes3_x*crs_rel_in_axes3_y +
-            crs_h_3_t_13*crs_rel_in_axes3_x)
+        inv_crs_v_3_in_axes1_x*(crs_c_3*crs_rel_in_axes3_y + crs_rel_in_axes3_x*crs_s_3)
         )
         crs_qdd_2 = (
-        crs_e_1_in_axes3_x*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x -
-            crs_h_3_t_13*crs_rel_in_axes3_y
+        crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*crs_r_1_in_axes1_x - crs_rel_in_axes3_y*crs_s_3
         )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_in_axes3_x = crs_e_1_in_axes3_x*crs_qdd_1
-        crs_alpha_1_in_axes3_y = -crs_h_3_t_13*crs_qdd_1
+        crs_alpha_1_in_axes3_x = crs_c_3*crs_qdd_1
+        crs_alpha_1_in_axes3_y = -crs_qdd_1*crs_s_3
         # (crs-alpha_3) angular acceleration of link 3
         crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
         crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - crs_W_3_in_axes3_xz
@@ -4667,8 +4641,8 @@ def _run_legs(m, X, V, A):
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
-        crs_g_in_axes3_x = crs_e_1_in_axes3_x*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_h_3_t_13
-        crs_g_in_axes3_y = crs_e_1_in_axes3_x*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_h_3_t_13
+        crs_g_in_axes3_x = crs_c_3*crs_g_in_axes1_z + crs_g_in_axes1_x*crs_s_3
+        crs_g_in_axes3_y = crs_c_3*crs_g_in_axes1_x - crs_g_in_axes1_z*crs_s_3
         crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - crs_g_in_axes3_x
         crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y - crs_g_in_axes3_y
         crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_y
@@ -4703,8 +4677,7 @@ def _run_legs(m, X, V, A):
         crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 - crs_mu_1_t
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         crs_N_1_in_axes1_z = (
-        crs_mu_1_in_axes1_z + crs_e_1_in_axes3_x*crs_mu_3_in_axes3_x -
-            crs_h_3_t_13*crs_mu_3_in_axes3_y
+        crs_mu_1_in_axes1_z + crs_c_3*crs_mu_3_in_axes3_x - crs_mu_3_in_axes3_y*crs_s_3
         )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
         crs_c_t = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3)
@@ -4715,12 +4688,12 @@ def _run_legs(m, X, V, A):
         )
         crs_c_in_axes3_x = (
         crs_c_t - crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y -
-            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_t_4*crs_h_3_t_13 -
-            crs_e_1_in_axes3_x*crs_f_2_in_axes1_z
+            crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z - crs_c_3*crs_f_2_in_axes1_z -
+            crs_c_t_4*crs_s_3
         )
         crs_c_in_axes3_y = (
-        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_h_3_t_13 -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t_4*crs_e_1_in_axes3_x
+        crs_c_t_2 + crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_f_2_in_axes1_z*crs_s_3 -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_3*crs_c_t_4
         )
         crs_c_in_axes3_z = (
         crs_c_t_3 - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
@@ -4743,7 +4716,7 @@ def _run_legs(m, X, V, A):
             axis_z_crs_axes3_z*crs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0) &
+        ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
@@ -4829,7 +4802,7 @@ def _run_potential(m, X):
             crs_platform_point_z, crs_potential_t, crs_potential_t_2, crs_size_t, crs_size_t_2,
             inv_crs_size_t,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4839,37 +4812,41 @@ def _run_potential(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_in_axes1_x = (
-        crs_e_1_in_axes3_x*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_h_3_t_13
-        )
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        # (crs-h_3) first moment of link 3 about the connection point
+        crs_h_3_in_axes1_x = crs_c_3*crs_h_3_in_spec3_y + crs_h_3_in_spec3_x*crs_s_3
         # (crs-acc_3) acceleration of the reference point of link 3, less gravity
         crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
         crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
@@ -4879,12 +4856,10 @@ def _run_potential(m, X):
             crs_link2_mass*(crs_c_1*crs_potential_t + crs_potential_t_2*crs_s_1)) +
             crs_g_in_axes1_y*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z +
             crs_link2_mass*(crs_c_1*crs_potential_t_2 - crs_potential_t*crs_s_1)) +
-            crs_g_in_axes1_z*(crs_h_2_in_spec1_x + crs_e_1_in_axes3_x*crs_h_3_in_spec3_x +
-            crs_link2_mass*(crs_b_in_axes1_z + crs_h_3_t_11) - crs_h_3_in_spec3_y*crs_h_3_t_13)
+            crs_g_in_axes1_z*(crs_h_2_in_spec1_x + crs_c_3*crs_h_3_in_spec3_x +
+            crs_link2_mass*(crs_b_in_axes1_z + crs_q_2) - crs_h_3_in_spec3_y*crs_s_3)
         )
-        ok = (
-        ok & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_h_3_t_10 >= 0.0)
-        )
+        ok = ok & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2 >= 0.0)
         # (potential) potential energy
         potential_t_2 += crs_potential_t_3
     # (potential) potential energy
@@ -4954,7 +4929,7 @@ def _run_condition(m, X):
             crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
             inv_crs_size, inv_crs_size_t, inv_crs_size_t_2,
         ) = k
-        # (crs-h_3) first moment of link 3 about the connection point
+        # (crs-S) from the base point to the connection point
         crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
@@ -4964,44 +4939,47 @@ def _run_condition(m, X):
         crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_h_3_t = crs_q_x + t_x - crs_base_point_x
-        crs_h_3_t_2 = crs_q_y + t_y - crs_base_point_y
-        crs_h_3_t_3 = crs_q_z + t_z - crs_base_point_z
-        crs_h_3_t_4 = (
-        crs_base_frame_xy*crs_h_3_t + crs_base_frame_yy*crs_h_3_t_2 +
-            crs_base_frame_zy*crs_h_3_t_3
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
+        crs_S_in_turn1_x = (
+        crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
         )
-        crs_h_3_t_5 = (
-        crs_base_frame_xz*crs_h_3_t + crs_base_frame_yz*crs_h_3_t_2 +
-            crs_base_frame_zz*crs_h_3_t_3
+        crs_S_in_turn1_y = (
+        crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz + crs_S_z*crs_base_frame_zz
         )
-        crs_h_3_t_6 = (
-        crs_base_frame_xx*crs_h_3_t + crs_base_frame_yx*crs_h_3_t_2 +
-            crs_base_frame_zx*crs_h_3_t_3
+        crs_S_in_turn1_z = (
+        crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
-        crs_h_3_t_7 = crs_h_3_t_4*crs_h_3_t_4 + crs_h_3_t_5*crs_h_3_t_5
-        crs_h_3_t_8 = crs_branch_1*sqrt(crs_h_3_t_7)
-        crs_h_3_t_9 = crs_h_3_t_6 - crs_joint3_offset_x
-        crs_h_3_t_10 = crs_size_t - crs_h_3_t_7
-        crs_h_3_t_11 = crs_h_3_t_9 + crs_branch_2*sqrt(crs_h_3_t_10)
-        crs_h_3_t_12 = crs_h_3_t_6 - crs_h_3_t_11 - crs_joint3_offset_x
-        crs_e_1_in_axes3_x = crs_h_3_t_12*crs_platform_joint_offset_x*inv_crs_size_t
-        crs_h_3_t_13 = crs_h_3_t_8*crs_platform_joint_offset_x*inv_crs_size_t
+        # (crs-rho2_1) squared amplitude
+        crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x + crs_S_in_turn1_y*crs_S_in_turn1_y
+        # (crs-root_1) root, with the sign of the branch
+        crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
         # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_h_3_t_7 = 1.0/crs_h_3_t_7
-        crs_c_1 = crs_h_3_t_4*crs_h_3_t_8*inv_crs_h_3_t_7
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1
         # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_h_3_t_5*crs_h_3_t_8*inv_crs_h_3_t_7
+        crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1
+        # (crs-from_centre_2) from the centre at zero displacement to the connection point
+        crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x
+        # (crs-disc_2) discriminant of the distance equation
+        crs_disc_2 = crs_size_t - crs_rho2_1
+        # (crs-q_2) displacement of joint 2
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
+        # (crs-x_3) from the origin of joint 3 to the connection point
+        crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2
+        # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+        crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
+        # (crs-s_3) sine of the angle of joint 3 from its reference direction
+        crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_in_axes1_x = crs_h_3_t_13*crs_platform_joint_offset_x
-        crs_r_1_t = crs_h_3_t_11 + crs_joint3_offset_x
-        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_e_1_in_axes3_x*crs_r_1_t
+        crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_t = crs_joint3_offset_x + crs_q_2
+        crs_r_1_in_axes3_x = crs_platform_joint_offset_x + crs_c_3*crs_r_1_t
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_in_axes3_z = (
-        crs_h_3_t_13*crs_r_1_in_axes3_x - crs_e_1_in_axes3_x*crs_h_3_t_13*crs_r_1_t
-        )
+        crs_v_1_in_axes3_z = crs_r_1_in_axes3_x*crs_s_3 - crs_c_3*crs_r_1_t*crs_s_3
         # (crs-v_3) velocity of the connection point per rate of joint 3
-        crs_v_3_in_axes1_x = crs_e_1_in_axes3_x*crs_platform_joint_offset_x
+        crs_v_3_in_axes1_x = crs_c_3*crs_platform_joint_offset_x
         # (crs-w_1) reciprocal vector 1
         axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1
         axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1
@@ -5011,19 +4989,16 @@ def _run_condition(m, X):
         crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
         crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_c_1*crs_e_1_in_axes3_x
-        crs_w_2_t_2 = crs_e_1_in_axes3_x*crs_s_1
+        crs_w_2_t = crs_c_1*crs_c_3
+        crs_w_2_t_2 = crs_c_3*crs_s_1
         axis_y_crs_axes3_x = (
-        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 -
-            crs_base_frame_xx*crs_h_3_t_13
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3
         )
         axis_y_crs_axes3_y = (
-        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 -
-            crs_base_frame_yx*crs_h_3_t_13
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3
         )
         axis_y_crs_axes3_z = (
-        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 -
-            crs_base_frame_zx*crs_h_3_t_13
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3
         )
         axis_x_crs_axes3_x = (
         axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
@@ -5036,13 +5011,13 @@ def _run_condition(m, X):
         )
         inv_crs_v_3_in_axes1_x = 1.0/crs_v_3_in_axes1_x
         crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_v_3_in_axes1_x
-        crs_w_2_in_axes3_x = crs_e_1_in_axes3_x + crs_h_3_t_13*crs_w_2_t_3
-        crs_w_2_in_axes3_y = crs_e_1_in_axes3_x*crs_w_2_t_3 - crs_h_3_t_13
+        crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3
         crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
         crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
         crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        crs_pivot_size = abs(crs_h_3_t_7)
+        crs_pivot_size = abs(crs_rho2_1)
         crs_pivot_size_2 = abs(crs_v_1_in_axes3_z)
         crs_pivot_size_3 = abs(crs_v_3_in_axes1_x)
         crs_least_pivots = (
@@ -5065,11 +5040,11 @@ def _run_condition(m, X):
         crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 + crs_spread_t_3*crs_spread_t_3
         )
         clear = (
-        clear & (abs(crs_h_3_t_7) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
+        clear & (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
             (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_v_3_in_axes1_x) >
             _TOLERANCE * crs_size)
         )
-        reached = reached & (crs_h_3_t_10 >= 0.0)
+        reached = reached & (crs_disc_2 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_crs += crs_spread_t_4
         # (crs-w_1) reciprocal vector 1
@@ -5090,7 +5065,7 @@ def _run_condition(m, X):
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_crs[0][leg]] = crs_least_pivots
-        out_reach[_reach_crs[0][leg]] = crs_h_3_t_10
+        out_reach[_reach_crs[0][leg]] = crs_disc_2
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_crs)*spread_t
     # (spread) rms distance of the platform points from their centroid

@@ -765,8 +765,6 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
             rrrs_J_1_t_2);
         /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrs_h_2_t = R(0.5)*rrrs_size_t;
-        const real rrrs_h_2_t_2 = R(0.5)*rrrs_size_t_2;
         const real rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
         const real rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
         const real rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
@@ -811,6 +809,10 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
             rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
         const real rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
             rrrs_J_3_t_4);
+        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real rrrs_Kd_2_t = R(0.5)*rrrs_size_t;
+        const real rrrs_Kd_2_t_2 = R(0.5)*rrrs_size_t_2;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3;
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
@@ -902,6 +904,8 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
         KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
         KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Kd_2_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
@@ -933,8 +937,6 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
         KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
         KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
-        KEEP_OF_LEG(rrrs_h_2_t);
-        KEEP_OF_LEG(rrrs_h_2_t_2);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
@@ -1709,34 +1711,34 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_h_2_t_9, rrrs_h_2_t_16, rrrs_h_2_t_17, rrrs_h_2_t_19,
-        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x,
-        rrrs_e_1_in_axes3_y, axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z,
-        axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x,
-        axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y,
-        rrrs_r_2_in_axes3_x, rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y,
-        rrrs_w_1_z, rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t,
-        rrrs_bias_t_2, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x,
-        rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x,
-        rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3,
-        rrrs_S_dot_t_4, rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz,
-        rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz,
-        rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x,
-        rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
-        rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
-        rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
-        rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x,
-        rrrs_c_in_axes3_y, rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz,
-        rrrs_Q_yz, rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
-        rrrs_M_ta_t_7, rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3,
-        rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6;
+    real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_rho2_1, rrrs_c_1, rrrs_s_1, rrrs_rho2_2, rrrs_disc_2,
+        rrrs_c_2, rrrs_s_2, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x, rrrs_e_1_in_axes3_y,
+        axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z, axis_y_rrrs_axes3_x,
+        axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x, axis_x_rrrs_axes3_y,
+        axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y, rrrs_r_2_in_axes3_x,
+        rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y, rrrs_w_1_z,
+        rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t, rrrs_bias_t_2,
+        rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x, rrrs_g_in_axes1_y,
+        rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x, rrrs_H_a_1_y,
+        rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3, rrrs_S_dot_t_4,
+        rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz, rrrs_W_2_in_axes2_xy,
+        rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz, rrrs_zeta_2_in_axes2_y,
+        rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x, rrrs_bias_in_axes3_y,
+        rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6, rrrs_mu_2_t_6,
+        rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3, rrrs_S_ddot_in_axes3_x,
+        rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1, rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x,
+        rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x,
+        rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x, rrrs_c_in_axes3_y,
+        rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
+        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
+        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
+        rrrs_M_aa_t_5, rrrs_M_aa_t_6;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
     real *X, values_rrrs *v)
 {
-    /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
+    /* (rrrs-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -1753,50 +1755,61 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_q_z = R_zx*m->rrrs_platform_point_x[i] + R_zy*m->rrrs_platform_point_y[i] +
         R_zz*m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_h_2_t_3 = t_x - m->rrrs_base_point_x[i] + v->rrrs_q_x;
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + v->rrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrs_h_2_t_4 = t_y - m->rrrs_base_point_y[i] + v->rrrs_q_y;
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + v->rrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrs_h_2_t_5 = t_z - m->rrrs_base_point_z[i] + v->rrrs_q_z;
-    const real rrrs_h_2_t_6 = m->rrrs_base_frame_xy[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yy[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zy[i]*rrrs_h_2_t_5;
-    const real rrrs_h_2_t_7 = m->rrrs_base_frame_xz[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yz[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zz[i]*rrrs_h_2_t_5;
-    const real rrrs_h_2_t_8 = m->rrrs_base_frame_xx[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yx[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zx[i]*rrrs_h_2_t_5;
-    v->rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7;
-    const real rrrs_h_2_t_10 = m->rrrs_branch_1[i]*root(v->rrrs_h_2_t_9);
-    const real rrrs_h_2_t_11 = rrrs_h_2_t_8 - m->rrrs_joint2_offset_x[i];
-    const real rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + v->rrrs_h_2_t_9;
-    const real rrrs_h_2_t_13 = m->rrrs_h_2_t[i] - m->rrrs_h_2_t_2[i] + R(0.5)*rrrs_h_2_t_12;
-    const real rrrs_h_2_t_14 = rrrs_h_2_t_11*m->rrrs_joint3_offset_x[i];
-    const real rrrs_h_2_t_15 = rrrs_h_2_t_10*m->rrrs_joint3_offset_x[i];
-    v->rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15;
-    v->rrrs_h_2_t_17 = v->rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13;
-    const real rrrs_h_2_t_18 = m->rrrs_branch_2[i]*root(v->rrrs_h_2_t_17);
-    const real inv_rrrs_h_2_t_16 = 1/v->rrrs_h_2_t_16;
-    v->rrrs_h_2_t_19 = inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 -
-        rrrs_h_2_t_15*rrrs_h_2_t_18);
-    v->rrrs_h_2_t_20 = inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 +
-        rrrs_h_2_t_14*rrrs_h_2_t_18);
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + v->rrrs_q_z;
+    const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
+        rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
+        rrrs_S_y*m->rrrs_base_frame_yz[i] + rrrs_S_z*m->rrrs_base_frame_zz[i];
+    const real rrrs_S_in_turn1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
+        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i];
+    /* (rrrs-rho2_1) squared amplitude */
+    v->rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
+        rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
+    /* (rrrs-root_1) root, with the sign of the branch */
+    const real rrrs_root_1 = m->rrrs_branch_1[i]*root(v->rrrs_rho2_1);
     /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrrs_h_2_t_9 = 1/v->rrrs_h_2_t_9;
-    v->rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6;
+    const real inv_rrrs_rho2_1 = 1/v->rrrs_rho2_1;
+    v->rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1;
     /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7;
+    v->rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
+    /* (rrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - m->rrrs_joint2_offset_x[i];
+    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real rrrs_Kd_2_t_3 = v->rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
+    /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
+    /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
+    const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
+    /* (rrrs-rho2_2) squared amplitude */
+    v->rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
+    /* (rrrs-disc_2) discriminant */
+    v->rrrs_disc_2 = v->rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
+    /* (rrrs-root_2) root, with the sign of the branch */
+    const real rrrs_root_2 = m->rrrs_branch_2[i]*root(v->rrrs_disc_2);
+    /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrrs_rho2_2 = 1/v->rrrs_rho2_2;
+    v->rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
+    /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+    v->rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
     const real rrrs_x_3_in_axes2_x =
-        m->inv_rrrs_size_t[i]*rrrs_h_2_t_13*m->rrrs_joint3_offset_x[i] -
+        m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
         m->rrrs_joint3_offset_x[i];
     /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
     v->rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_x_3_in_axes2_x;
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
     v->rrrs_s_3_t =
-        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*rrrs_h_2_t_18*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i];
+        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_root_2;
     /* (rrrs-S_dot) velocity of the connection point */
-    v->rrrs_e_1_in_axes3_x = v->rrrs_c_3*v->rrrs_h_2_t_19 + v->rrrs_h_2_t_20*v->rrrs_s_3_t;
-    v->rrrs_e_1_in_axes3_y = v->rrrs_h_2_t_19*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_h_2_t_20;
+    v->rrrs_e_1_in_axes3_x = v->rrrs_c_2*v->rrrs_c_3 + v->rrrs_s_2*v->rrrs_s_3_t;
+    v->rrrs_e_1_in_axes3_y = v->rrrs_c_2*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_s_2;
     v->axis_z_rrrs_axes3_x = m->rrrs_base_frame_xz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_xy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_y = m->rrrs_base_frame_yz[i]*v->rrrs_c_1 -
@@ -1822,8 +1835,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_r_2_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
     v->rrrs_r_2_in_axes3_x = m->rrrs_platform_joint_offset_x[i] + v->rrrs_d_3_in_axes3_x;
     /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
-    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
+    const real rrrs_v_1_t = rrrs_S_in_turn1_z*v->rrrs_c_2 + rrrs_root_1*v->rrrs_s_2;
+    const real rrrs_v_1_t_2 = v->rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*v->rrrs_s_2;
     v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
         v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
         v->rrrs_s_3_t*rrrs_v_1_t_2);
@@ -1838,8 +1851,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_w_2_y = v->axis_x_rrrs_axes3_y*v->rrrs_w_2_in_axes3_x;
     v->rrrs_w_2_z = v->axis_x_rrrs_axes3_z*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrrs_bias_t = v->rrrs_h_2_t_19*m->rrrs_joint2_offset_x[i];
-    v->rrrs_bias_t_2 = v->rrrs_h_2_t_20*m->rrrs_joint2_offset_x[i];
+    v->rrrs_bias_t = v->rrrs_c_2*m->rrrs_joint2_offset_x[i];
+    v->rrrs_bias_t_2 = m->rrrs_joint2_offset_x[i]*v->rrrs_s_2;
     /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rrrs_g_in_axes3_x = v->axis_x_rrrs_axes3_x*m->gravity_x +
         v->axis_x_rrrs_axes3_y*m->gravity_y + v->axis_x_rrrs_axes3_z*m->gravity_z;
@@ -1850,10 +1863,10 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->rrrs_g_in_axes1_x = v->rrrs_c_1*m->rrrs_mu_2_t[i] + m->rrrs_mu_2_t_2[i]*v->rrrs_s_1;
     v->rrrs_g_in_axes1_y = v->rrrs_c_1*m->rrrs_mu_2_t_2[i] - m->rrrs_mu_2_t[i]*v->rrrs_s_1;
-    const real rrrs_g_in_axes2_x = v->rrrs_g_in_axes1_x*v->rrrs_h_2_t_20 +
-        m->rrrs_g_in_axes1_z[i]*v->rrrs_h_2_t_19;
-    const real rrrs_g_in_axes2_y = v->rrrs_g_in_axes1_x*v->rrrs_h_2_t_19 -
-        m->rrrs_g_in_axes1_z[i]*v->rrrs_h_2_t_20;
+    const real rrrs_g_in_axes2_x = v->rrrs_c_2*m->rrrs_g_in_axes1_z[i] +
+        v->rrrs_g_in_axes1_x*v->rrrs_s_2;
+    const real rrrs_g_in_axes2_y = v->rrrs_c_2*v->rrrs_g_in_axes1_x -
+        m->rrrs_g_in_axes1_z[i]*v->rrrs_s_2;
     v->rrrs_mu_2_t_9 = v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] -
         rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i];
     v->rrrs_mu_2_t_10 = rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
@@ -1901,8 +1914,8 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z -
         v->rrrs_qd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-omega_1) angular velocity of link 1 */
-    const real rrrs_omega_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qd_1;
-    const real rrrs_omega_1_in_axes2_y = -v->rrrs_h_2_t_20*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes2_x = v->rrrs_c_2*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes2_y = -v->rrrs_qd_1*v->rrrs_s_2;
     const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x -
         rrrs_omega_1_in_axes2_y*v->rrrs_s_3_t;
     const real rrrs_omega_1_in_axes3_y = v->rrrs_c_3*rrrs_omega_1_in_axes2_y +
@@ -2034,8 +2047,8 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
     const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real rrrs_alpha_1_o_in_axes2_x = v->rrrs_h_2_t_19*rrrs_qdd_1_o;
-    const real rrrs_alpha_1_o_t = v->rrrs_h_2_t_20*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_in_axes2_x = v->rrrs_c_2*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v->rrrs_s_2;
     /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrrs_alpha_2_o_in_axes2_x = v->rrrs_W_2_in_axes2_yz +
         rrrs_alpha_1_o_in_axes2_x;
@@ -2116,7 +2129,7 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
-        rrrs_N_2_o_in_axes2_x*v->rrrs_h_2_t_19 - rrrs_N_2_o_in_axes2_y*v->rrrs_h_2_t_20;
+        rrrs_N_2_o_in_axes2_x*v->rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v->rrrs_s_2;
     /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
@@ -2153,8 +2166,8 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
 INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v)
 {
     /* (rrrs-alpha_1) angular acceleration of link 1 */
-    const real rrrs_alpha_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qdd_1;
-    const real rrrs_alpha_1_t = v->rrrs_h_2_t_20*v->rrrs_qdd_1;
+    const real rrrs_alpha_1_in_axes2_x = v->rrrs_c_2*v->rrrs_qdd_1;
+    const real rrrs_alpha_1_t = v->rrrs_qdd_1*v->rrrs_s_2;
     /* (rrrs-alpha_2) angular acceleration of link 2 */
     const real rrrs_alpha_2_in_axes2_x = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x;
     const real rrrs_alpha_2_in_axes2_y = v->rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t;
@@ -2226,8 +2239,8 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         v->rrrs_mu_1_t;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
-    const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z +
-        rrrs_N_2_in_axes2_x*v->rrrs_h_2_t_19 - rrrs_N_2_in_axes2_y*v->rrrs_h_2_t_20;
+    const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
+        rrrs_N_2_in_axes2_y*v->rrrs_s_2;
     /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
@@ -2260,12 +2273,10 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
         - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes1_zz =
-        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
+    const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xx[i] +
         rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
-        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
-        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
         m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
         v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
     /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
@@ -2281,11 +2292,10 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
        inertia and weight */
     const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
     const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
-        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
+        v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
-        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
-        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3 -
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) - rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
     const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
         v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
     const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
@@ -2464,8 +2474,8 @@ INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real 
 INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const values_rrrs *v, real
     *o)
 {
-    o[k] = UNLESS(magnitude(v->rrrs_h_2_t_9) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
-        UNLESS(magnitude(v->rrrs_h_2_t_16) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
+    o[k] = UNLESS(magnitude(v->rrrs_rho2_1) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrs_rho2_2) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
         UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
         UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
 }
@@ -2545,7 +2555,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     any_sums_rrrs(k, count, add, &v, terms);
     any_sums_rrrs_2(k, count, add, &v, terms + 20*count);
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
@@ -2737,7 +2747,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_X(m, w, i, j, s, X, &v);
     stage_rrrs_M_dynamics(m, i, &v);
     any_sums_rrrs(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
@@ -2906,7 +2916,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
     any_sums_rrrs_2(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
@@ -3001,7 +3011,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
@@ -3143,7 +3153,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
 }
 
@@ -3263,7 +3273,7 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     /* (rrrs-q_1) displacement of joint 1 */
     const real rrrs_q_1 = angle(v.rrrs_s_1, v.rrrs_c_1);
     /* (rrrs-q_2) displacement of joint 2 */
-    const real rrrs_q_2 = angle(v.rrrs_h_2_t_20, v.rrrs_h_2_t_19);
+    const real rrrs_q_2 = angle(v.rrrs_s_2, v.rrrs_c_2);
     /* (rrrs-q_3) displacement of joint 3 */
     const real rrrs_q_3 = angle(-v.rrrs_s_3_t, v.rrrs_c_3);
     /* (rrrs-q_1) */
@@ -3272,9 +3282,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = rrrs_q_2;
     /* (rrrs-q_3) */
     o[2*count + k] = rrrs_q_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
     o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
 }
@@ -3342,7 +3352,7 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
 }
@@ -3412,7 +3422,7 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.rrrs_qdd_2;
     /* (rrrs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.rrrs_qdd_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
 }
@@ -3505,7 +3515,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
-    o[9*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[9*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 10*count);
 }
 
@@ -3565,8 +3575,8 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-    const real rrrs_h_2_in_axes1_z = m->rrrs_h_2_in_spec2_x[i]*v.rrrs_h_2_t_19 -
-        m->rrrs_h_2_in_spec2_y[i]*v.rrrs_h_2_t_20;
+    const real rrrs_h_2_in_axes1_z = v.rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
+        m->rrrs_h_2_in_spec2_y[i]*v.rrrs_s_2;
     /* (potential) */
     const real rrrs_b_in_spec1_y = v.rrrs_c_1*m->rrrs_potential_t[i] +
         m->rrrs_potential_t_2[i]*v.rrrs_s_1;
@@ -3581,16 +3591,16 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         rrrs_b_in_spec1_z*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]) +
         v.rrrs_g_in_axes1_x*(m->rrrs_h_1_in_spec1_y[i] +
         rrrs_b_in_spec1_y*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_y*m->rrrs_link2_mass[i] +
-        m->rrrs_h_2_in_spec2_x[i]*v.rrrs_h_2_t_20 + m->rrrs_h_2_in_spec2_y[i]*v.rrrs_h_2_t_19
-        + v.rrrs_h_2_t_19*rrrs_potential_t_6 + v.rrrs_h_2_t_20*rrrs_potential_t_5) +
+        v.rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + m->rrrs_h_2_in_spec2_x[i]*v.rrrs_s_2 +
+        v.rrrs_c_2*rrrs_potential_t_6 + rrrs_potential_t_5*v.rrrs_s_2) +
         m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
-        m->rrrs_potential_t_4[i] + rrrs_h_2_in_axes1_z + v.rrrs_h_2_t_19*rrrs_potential_t_5 -
-        v.rrrs_h_2_t_20*rrrs_potential_t_6);
+        m->rrrs_potential_t_4[i] + rrrs_h_2_in_axes1_z + v.rrrs_c_2*rrrs_potential_t_5 -
+        rrrs_potential_t_6*v.rrrs_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, rrrs_potential_t_7);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
 }
 
@@ -3658,8 +3668,8 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     stage_rrrs_X(m, w, i, j, s, X, &v);
     /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrrs_pivot_size = magnitude(v.rrrs_h_2_t_9);
-    const real rrrs_pivot_size_2 = magnitude(v.rrrs_h_2_t_16);
+    const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
+    const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
     const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
     const real rrrs_pivot_size_4 = magnitude(v.rrrs_r_2_in_axes3_y);
     const real rrrs_least_pivots =
@@ -3677,13 +3687,13 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     any_entries_rrrs(k, count, &v, o);
     /* (rrrs-G) */
     o[12*count + k] = rrrs_least_pivots;
-    o[13*count + k] = v.rrrs_h_2_t_17;
-    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[13*count + k] = v.rrrs_disc_2;
+    o[14*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
         v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
         v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
-        v.rrrs_h_2_t_17)));
+        v.rrrs_disc_2)));
 }
 
 INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real

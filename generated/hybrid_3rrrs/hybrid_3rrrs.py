@@ -600,8 +600,6 @@ def _prepare(p):
     )
     rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
     # (rrrs-h_2) first moment of link 2 about the origin of link 2
-    rrrs_h_2_t = 0.5*rrrs_size_t
-    rrrs_h_2_t_2 = 0.5*rrrs_size_t_2
     rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
@@ -649,6 +647,9 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
     # (rrrs-rho2_2) squared amplitude
     rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
     # (rrrs-x_3) from the origin of joint 3 to the connection point
@@ -778,16 +779,16 @@ def _prepare(p):
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
-                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -806,13 +807,13 @@ def _prepare(p):
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
-                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_2_t,
-                    rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
                     rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
                     rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -828,15 +829,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -849,11 +850,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3,),
@@ -869,15 +870,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -890,11 +891,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
@@ -904,11 +905,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -919,11 +920,11 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -936,15 +937,15 @@ def _prepare(p):
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
                     rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
@@ -958,13 +959,13 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
                     rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
@@ -979,11 +980,11 @@ def _prepare(p):
             (
                 (_rrrs,
         (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
                     rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
@@ -2091,21 +2092,21 @@ def _run_dynamics(m, X, V):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -2115,56 +2116,60 @@ def _run_dynamics(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -2206,8 +2211,8 @@ def _run_dynamics(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -2237,8 +2242,8 @@ def _run_dynamics(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -2279,8 +2284,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -2316,8 +2321,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -2375,11 +2380,11 @@ def _run_dynamics(m, X, V):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
-            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
-            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
@@ -2424,8 +2429,8 @@ def _run_dynamics(m, X, V):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -2479,17 +2484,16 @@ def _run_dynamics(m, X, V):
         rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
         rrrs_d_Gamma_1_in_axes3_x = (
         rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
-            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+            rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t) - rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
@@ -2616,8 +2620,8 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -2821,17 +2825,17 @@ def _run_M(m, X):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
-            rrrs_h_2_t, rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
             rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -2841,56 +2845,60 @@ def _run_M(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -2922,8 +2930,8 @@ def _run_M(m, X):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -2947,11 +2955,11 @@ def _run_M(m, X):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
-            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
-            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
@@ -2966,10 +2974,10 @@ def _run_M(m, X):
         rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
         rrrs_d_Gamma_1_in_axes3_x = (
         rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
-            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+            rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t) - rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
@@ -3051,8 +3059,8 @@ def _run_M(m, X):
         rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3237,20 +3245,20 @@ def _run_Z(m, X, V):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3260,56 +3268,60 @@ def _run_Z(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -3351,8 +3363,8 @@ def _run_Z(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3374,8 +3386,8 @@ def _run_Z(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -3416,8 +3428,8 @@ def _run_Z(m, X, V):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -3453,8 +3465,8 @@ def _run_Z(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -3537,8 +3549,8 @@ def _run_Z(m, X, V):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -3588,8 +3600,7 @@ def _run_Z(m, X, V):
         rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -3629,8 +3640,8 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3704,15 +3715,15 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3722,56 +3733,60 @@ def _run_H(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -3801,8 +3816,8 @@ def _run_H(m, X):
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3826,8 +3841,8 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -3994,20 +4009,20 @@ def _run_required(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4017,56 +4032,60 @@ def _run_required(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -4108,8 +4127,8 @@ def _run_required(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4137,8 +4156,8 @@ def _run_required(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -4179,8 +4198,8 @@ def _run_required(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -4218,8 +4237,8 @@ def _run_required(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -4294,8 +4313,8 @@ def _run_required(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -4340,8 +4359,7 @@ def _run_required(m, X, V, A):
         rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -4387,8 +4405,8 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -4479,15 +4497,15 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4497,62 +4515,66 @@ def _run_inverse_kinematics(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-q_1) displacement of joint 1
         rrrs_q_1 = atan2(rrrs_s_1, rrrs_c_1)
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-q_2) displacement of joint 2
-        rrrs_q_2 = atan2(rrrs_h_2_t_20, rrrs_h_2_t_19)
+        rrrs_q_2 = atan2(rrrs_s_2, rrrs_c_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-q_3) displacement of joint 3
         rrrs_q_3 = atan2(-rrrs_s_3_t, rrrs_c_3)
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -4619,15 +4641,15 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4637,56 +4659,60 @@ def _run_joint_rates(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -4728,8 +4754,8 @@ def _run_joint_rates(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4751,8 +4777,8 @@ def _run_joint_rates(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -4851,15 +4877,15 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4869,56 +4895,60 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -4960,8 +4990,8 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4983,8 +5013,8 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -5019,8 +5049,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -5058,8 +5088,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5162,20 +5192,20 @@ def _run_legs(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5185,56 +5215,60 @@ def _run_legs(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -5276,8 +5310,8 @@ def _run_legs(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -5305,8 +5339,8 @@ def _run_legs(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -5347,8 +5381,8 @@ def _run_legs(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -5386,8 +5420,8 @@ def _run_legs(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -5462,8 +5496,8 @@ def _run_legs(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -5508,8 +5542,7 @@ def _run_legs(m, X, V, A):
         rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -5547,8 +5580,8 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5624,19 +5657,19 @@ def _run_potential(m, X):
     potential_t_2, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-            rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
-            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
+            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
             rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5646,55 +5679,58 @@ def _run_potential(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_in_axes1_z = (
-        rrrs_h_2_in_spec2_x*rrrs_h_2_t_19 - rrrs_h_2_in_spec2_y*rrrs_h_2_t_20
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_h_2_in_axes1_z = rrrs_c_2*rrrs_h_2_in_spec2_x - rrrs_h_2_in_spec2_y*rrrs_s_2
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
@@ -5706,17 +5742,17 @@ def _run_potential(m, X):
         rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
         rrrs_potential_t_7 = (
         rrrs_g_in_axes1_x*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
-            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_h_2_in_spec2_x*rrrs_h_2_t_20 +
-            rrrs_h_2_in_spec2_y*rrrs_h_2_t_19 + rrrs_h_2_t_19*rrrs_potential_t_6 +
-            rrrs_h_2_t_20*rrrs_potential_t_5) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
+            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_c_2*rrrs_h_2_in_spec2_y +
+            rrrs_c_2*rrrs_potential_t_6 + rrrs_h_2_in_spec2_x*rrrs_s_2 +
+            rrrs_potential_t_5*rrrs_s_2) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
             rrrs_h_2_in_spec2_z + rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
             rrrs_b_in_spec1_z*rrrs_link2_mass) + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x +
             rrrs_h_2_in_axes1_z + rrrs_potential_t_3 + rrrs_potential_t_4 +
-            rrrs_h_2_t_19*rrrs_potential_t_5 - rrrs_h_2_t_20*rrrs_potential_t_6)
+            rrrs_c_2*rrrs_potential_t_5 - rrrs_potential_t_6*rrrs_s_2)
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (potential) potential energy
         potential_t_2 += rrrs_potential_t_7
@@ -5781,14 +5817,15 @@ def _run_condition(m, X):
     for leg, k in legs[0]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5798,56 +5835,60 @@ def _run_condition(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -5877,8 +5918,8 @@ def _run_condition(m, X):
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -5894,8 +5935,8 @@ def _run_condition(m, X):
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
         rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_pivot_size = abs(rrrs_h_2_t_9)
-        rrrs_pivot_size_2 = abs(rrrs_h_2_t_16)
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
         rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
         rrrs_least_pivots = (
@@ -5920,12 +5961,11 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_h_2_t_16) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
-            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size)
+        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
+            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
         )
-        reached = reached & (rrrs_h_2_t_17 >= 0.0)
+        reached = reached & (rrrs_disc_2 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
@@ -5946,7 +5986,7 @@ def _run_condition(m, X):
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
-        out_reach[_reach_rrrs[0][leg]] = rrrs_h_2_t_17
+        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(spread_rrrs)*spread_t
     # (spread) rms distance of the platform points from their centroid

@@ -879,8 +879,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrrs_J_2_in_spec2_zz = rrrrs_link2_inertia_zz -
             rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4);
         /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
-        const real rrrrs_h_3_t = R(0.5)*rrrrs_size_t;
-        const real rrrrs_h_3_t_2 = R(0.5)*rrrrs_size_t_2;
         const real rrrrs_h_3_in_spec3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass;
         const real rrrrs_h_3_in_spec3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
         const real rrrrs_h_3_in_spec3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
@@ -925,6 +923,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
         const real rrrrs_J_4_in_spec4_zz = rrrrs_link4_inertia_zz -
             rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4);
+        /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 3 */
+        const real rrrrs_Kd_3_t = R(0.5)*rrrrs_size_t;
+        const real rrrrs_Kd_3_t_2 = R(0.5)*rrrrs_size_t_2;
         /* (rrrrs-rho2_3) squared amplitude */
         const real rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3;
         /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
@@ -1042,6 +1044,8 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         KEEP_OF_LEG(rrrrs_J_4_in_spec4_zz);
         KEEP_OF_LEG(rrrrs_Jc_2_t);
         KEEP_OF_LEG(rrrrs_Jc_3_in_axes3_zz);
+        KEEP_OF_LEG(rrrrs_Kd_3_t);
+        KEEP_OF_LEG(rrrrs_Kd_3_t_2);
         KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_xx);
         KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_yy);
         KEEP_OF_LEG(rrrrs_Sigma_2_in_axes2_zz);
@@ -1084,8 +1088,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         KEEP_OF_LEG(rrrrs_h_3_in_spec3_x);
         KEEP_OF_LEG(rrrrs_h_3_in_spec3_y);
         KEEP_OF_LEG(rrrrs_h_3_in_spec3_z);
-        KEEP_OF_LEG(rrrrs_h_3_t);
-        KEEP_OF_LEG(rrrrs_h_3_t_2);
         KEEP_OF_LEG(rrrrs_h_4_in_spec4_x);
         KEEP_OF_LEG(rrrrs_h_4_in_spec4_y);
         KEEP_OF_LEG(rrrrs_h_4_in_spec4_z);
@@ -1189,8 +1191,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
             rrrs_J_1_t_2);
         /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrs_h_2_t = R(0.5)*rrrs_size_t;
-        const real rrrs_h_2_t_2 = R(0.5)*rrrs_size_t_2;
         const real rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
         const real rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
         const real rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
@@ -1235,6 +1235,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
         const real rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
             rrrs_J_3_t_4);
+        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real rrrs_Kd_2_t = R(0.5)*rrrs_size_t;
+        const real rrrs_Kd_2_t_2 = R(0.5)*rrrs_size_t_2;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3;
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
@@ -1326,6 +1330,8 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         KEEP_OF_LEG(rrrs_J_3_in_spec3_yz);
         KEEP_OF_LEG(rrrs_J_3_in_spec3_zz);
         KEEP_OF_LEG(rrrs_Jc_2_in_axes2_zz);
+        KEEP_OF_LEG(rrrs_Kd_2_t);
+        KEEP_OF_LEG(rrrs_Kd_2_t_2);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_xx);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_yy);
         KEEP_OF_LEG(rrrs_Sigma_2_in_axes2_zz);
@@ -1357,8 +1363,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         KEEP_OF_LEG(rrrs_h_2_in_spec2_x);
         KEEP_OF_LEG(rrrs_h_2_in_spec2_y);
         KEEP_OF_LEG(rrrs_h_2_in_spec2_z);
-        KEEP_OF_LEG(rrrs_h_2_t);
-        KEEP_OF_LEG(rrrs_h_2_t_2);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_x);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_y);
         KEEP_OF_LEG(rrrs_h_3_in_spec3_z);
@@ -2245,20 +2249,20 @@ INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *
 }
 
 typedef struct {
-    real rrrrs_bias_t, rrrrs_q_x, rrrrs_q_y, rrrrs_q_z, rrrrs_h_3_t_6, rrrrs_h_3_t_7, rrrrs_h_3_t_11,
-        rrrrs_h_3_t_22, rrrrs_h_3_t_23, rrrrs_h_3_t_25, rrrrs_h_3_t_26, rrrrs_h_3_in_axes2_x,
-        rrrrs_c_1, rrrrs_s_1, rrrrs_c_4, rrrrs_s_4_t, rrrrs_d_4_in_axes4_x, rrrrs_r_3_in_axes4_y,
-        rrrrs_r_3_in_axes4_x, rrrrs_d_3_in_axes4_x, rrrrs_d_3_in_axes4_y, rrrrs_r_2_in_axes4_x,
-        rrrrs_r_2_in_axes4_y, rrrrs_e_1_in_axes4_x, rrrrs_e_1_in_axes4_y, rrrrs_v_1_in_axes4_z,
-        axis_z_rrrrs_axes4_x, axis_z_rrrrs_axes4_y, axis_z_rrrrs_axes4_z, rrrrs_w_1_in_axes4_z,
-        rrrrs_w_1_x, rrrrs_w_1_y, rrrrs_w_1_z, axis_y_rrrrs_axes4_x, axis_y_rrrrs_axes4_y,
-        axis_y_rrrrs_axes4_z, axis_x_rrrrs_axes4_x, axis_x_rrrrs_axes4_y, axis_x_rrrrs_axes4_z,
-        inv_rrrrs_r_3_in_axes4_y, rrrrs_w_3_t_7, rrrrs_w_3_t_8, rrrrs_w_3_t_9, rrrrs_w_3_t_10,
-        rrrrs_d_2_in_axes4_x, rrrrs_d_2_in_axes4_y, rrrrs_g_in_axes1_x, rrrrs_g_in_axes1_y,
-        rrrrs_g_in_axes3_x, rrrrs_g_in_axes3_y, rrrrs_g_in_axes4_x, rrrrs_g_in_axes4_y,
-        rrrrs_g_in_axes4_z, rrrrs_P_c_3_in_axes2_x, rrrrs_mu_2_t_5, rrrrs_mu_2_t_6, rrrrs_mu_2_t_7,
-        rrrrs_mu_1_t, rrrrs_H_a_1_x, rrrrs_H_a_1_y, rrrrs_H_a_1_z, rrrrs_H_a_3_x, rrrrs_H_a_3_y,
-        rrrrs_H_a_3_z, rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z, rrrrs_qd_1, rrrrs_qd_3_t, rrrrs_qd_4,
+    real rrrrs_bias_t, rrrrs_q_x, rrrrs_q_y, rrrrs_q_z, rrrrs_c_2, rrrrs_s_2, rrrrs_rho2_1, rrrrs_c_1,
+        rrrrs_s_1, rrrrs_rho2_3, rrrrs_disc_3, rrrrs_c_3, rrrrs_s_3, rrrrs_h_3_in_axes2_x, rrrrs_c_4,
+        rrrrs_s_4_t, rrrrs_d_4_in_axes4_x, rrrrs_r_3_in_axes4_y, rrrrs_r_3_in_axes4_x,
+        rrrrs_d_3_in_axes4_x, rrrrs_d_3_in_axes4_y, rrrrs_r_2_in_axes4_x, rrrrs_r_2_in_axes4_y,
+        rrrrs_e_1_in_axes4_x, rrrrs_e_1_in_axes4_y, rrrrs_v_1_in_axes4_z, axis_z_rrrrs_axes4_x,
+        axis_z_rrrrs_axes4_y, axis_z_rrrrs_axes4_z, rrrrs_w_1_in_axes4_z, rrrrs_w_1_x, rrrrs_w_1_y,
+        rrrrs_w_1_z, axis_y_rrrrs_axes4_x, axis_y_rrrrs_axes4_y, axis_y_rrrrs_axes4_z,
+        axis_x_rrrrs_axes4_x, axis_x_rrrrs_axes4_y, axis_x_rrrrs_axes4_z, inv_rrrrs_r_3_in_axes4_y,
+        rrrrs_w_3_t_7, rrrrs_w_3_t_8, rrrrs_w_3_t_9, rrrrs_w_3_t_10, rrrrs_d_2_in_axes4_x,
+        rrrrs_d_2_in_axes4_y, rrrrs_g_in_axes1_x, rrrrs_g_in_axes1_y, rrrrs_g_in_axes3_x,
+        rrrrs_g_in_axes3_y, rrrrs_g_in_axes4_x, rrrrs_g_in_axes4_y, rrrrs_g_in_axes4_z,
+        rrrrs_P_c_3_in_axes2_x, rrrrs_mu_2_t_5, rrrrs_mu_2_t_6, rrrrs_mu_2_t_7, rrrrs_mu_1_t,
+        rrrrs_H_a_1_x, rrrrs_H_a_1_y, rrrrs_H_a_1_z, rrrrs_H_a_3_x, rrrrs_H_a_3_y, rrrrs_H_a_3_z,
+        rrrrs_a_p_x, rrrrs_a_p_y, rrrrs_a_p_z, rrrrs_qd_1, rrrrs_qd_3_t, rrrrs_qd_4,
         rrrrs_W_1_in_axes4_xy, rrrrs_W_2_in_axes2_yz, rrrrs_W_2_in_axes2_xz, rrrrs_W_2_in_axes2_xy,
         rrrrs_W_3_in_axes3_xy, rrrrs_W_3_in_axes3_xz, rrrrs_W_3_in_axes3_yz, rrrrs_W_4_in_axes4_xz,
         rrrrs_W_4_in_axes4_yz, rrrrs_u_1_x, rrrrs_u_1_y, rrrrs_u_1_z, rrrrs_zeta_3_t,
@@ -2290,7 +2294,7 @@ INLINE void stage_rrrrs_V(size_t w, size_t j, const real *V, values_rrrrs *v)
 INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
     real *X, values_rrrrs *v)
 {
-    /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
+    /* (rrrrs-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -2307,82 +2311,93 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_q_z = R_zx*m->rrrrs_platform_point_x[i] + R_zy*m->rrrrs_platform_point_y[i] +
         R_zz*m->rrrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrrs_h_3_t_3 = t_x - m->rrrrs_base_point_x[i] + v->rrrrs_q_x;
+    const real rrrrs_S_x = t_x - m->rrrrs_base_point_x[i] + v->rrrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrrs_h_3_t_4 = t_y - m->rrrrs_base_point_y[i] + v->rrrrs_q_y;
+    const real rrrrs_S_y = t_y - m->rrrrs_base_point_y[i] + v->rrrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrrs_h_3_t_5 = t_z - m->rrrrs_base_point_z[i] + v->rrrrs_q_z;
+    const real rrrrs_S_z = t_z - m->rrrrs_base_point_z[i] + v->rrrrs_q_z;
+    const real rrrrs_S_in_turn1_x = rrrrs_S_x*m->rrrrs_base_frame_xy[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yy[i] + rrrrs_S_z*m->rrrrs_base_frame_zy[i];
+    const real rrrrs_S_in_turn1_y = rrrrs_S_x*m->rrrrs_base_frame_xz[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yz[i] + rrrrs_S_z*m->rrrrs_base_frame_zz[i];
+    const real rrrrs_S_in_turn1_z = rrrrs_S_x*m->rrrrs_base_frame_xx[i] +
+        rrrrs_S_y*m->rrrrs_base_frame_yx[i] + rrrrs_S_z*m->rrrrs_base_frame_zx[i];
+    /* (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction */
     const real rrrrs_y_2_extra = X[7*w + j];
-    v->rrrrs_h_3_t_6 = cosine(rrrrs_y_2_extra);
-    v->rrrrs_h_3_t_7 = sine(rrrrs_y_2_extra);
-    const real rrrrs_h_3_t_8 = m->rrrrs_base_frame_xy[i]*rrrrs_h_3_t_3 +
-        m->rrrrs_base_frame_yy[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zy[i]*rrrrs_h_3_t_5;
-    const real rrrrs_h_3_t_9 = m->rrrrs_base_frame_xz[i]*rrrrs_h_3_t_3 +
-        m->rrrrs_base_frame_yz[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zz[i]*rrrrs_h_3_t_5;
-    const real rrrrs_h_3_t_10 = m->rrrrs_base_frame_xx[i]*rrrrs_h_3_t_3 +
-        m->rrrrs_base_frame_yx[i]*rrrrs_h_3_t_4 + m->rrrrs_base_frame_zx[i]*rrrrs_h_3_t_5;
-    v->rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9;
-    const real rrrrs_h_3_t_12 = m->rrrrs_branch_1[i]*root(v->rrrrs_h_3_t_11);
-    const real rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_h_3_t_14 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_15 = rrrrs_h_3_t_12*v->rrrrs_h_3_t_6;
-    const real rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*v->rrrrs_h_3_t_7;
-    const real rrrrs_h_3_t_17 = rrrrs_h_3_t_13*v->rrrrs_h_3_t_6 - m->rrrrs_joint3_offset_x[i]
-        + rrrrs_h_3_t_14;
-    const real rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17;
-    const real rrrrs_h_3_t_19 = m->rrrrs_h_3_t[i] - m->rrrrs_h_3_t_2[i] +
-        R(0.5)*rrrrs_h_3_t_18;
-    const real rrrrs_h_3_t_20 = rrrrs_h_3_t_17*m->rrrrs_joint4_offset_x[i];
-    const real rrrrs_h_3_t_21 = rrrrs_h_3_t_16*m->rrrrs_joint4_offset_x[i];
-    v->rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21;
-    v->rrrrs_h_3_t_23 = v->rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19;
-    const real rrrrs_h_3_t_24 = m->rrrrs_branch_3[i]*root(v->rrrrs_h_3_t_23);
-    const real inv_rrrrs_h_3_t_22 = 1/v->rrrrs_h_3_t_22;
-    v->rrrrs_h_3_t_25 = inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 -
-        rrrrs_h_3_t_21*rrrrs_h_3_t_24);
-    v->rrrrs_h_3_t_26 = inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 +
-        rrrrs_h_3_t_20*rrrrs_h_3_t_24);
-    v->rrrrs_h_3_in_axes2_x = m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_25 -
-        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_26;
+    v->rrrrs_c_2 = cosine(rrrrs_y_2_extra);
+    /* (rrrrs-s_2) sine of the angle of joint 2 from its reference direction */
+    v->rrrrs_s_2 = sine(rrrrs_y_2_extra);
+    /* (rrrrs-rho2_1) squared amplitude */
+    v->rrrrs_rho2_1 = rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x +
+        rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y;
+    /* (rrrrs-root_1) root, with the sign of the branch */
+    const real rrrrs_root_1 = m->rrrrs_branch_1[i]*root(v->rrrrs_rho2_1);
     /* (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrrrs_h_3_t_11 = 1/v->rrrrs_h_3_t_11;
-    v->rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8;
+    const real inv_rrrrs_rho2_1 = 1/v->rrrrs_rho2_1;
+    v->rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1;
     /* (rrrrs-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9;
+    v->rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1;
+    /* (rrrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_x_2_t = v->rrrrs_c_2*rrrrs_root_1;
+    const real rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - v->rrrrs_s_2*rrrrs_x_2_in_axes1_z;
+    /* (rrrrs-x_3) from the origin of joint 3 to the connection point */
+    const real rrrrs_x_3_t = rrrrs_root_1*v->rrrrs_s_2;
+    const real rrrrs_x_3_in_axes2_x = v->rrrrs_c_2*rrrrs_x_2_in_axes1_z -
+        m->rrrrs_joint3_offset_x[i] + rrrrs_x_3_t;
+    /* (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 3 */
+    const real rrrrs_Kd_3_t_3 = rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y +
+        rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x;
+    const real rrrrs_Kd_3 = m->rrrrs_Kd_3_t[i] - m->rrrrs_Kd_3_t_2[i] + R(0.5)*rrrrs_Kd_3_t_3;
+    /* (rrrrs-Kc_3) factor of the cosine in the equation of joint 3 */
+    const real rrrrs_Kc_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_3_in_axes2_x;
+    /* (rrrrs-Ks_3) factor of the sine in the equation of joint 3 */
+    const real rrrrs_Ks_3 = m->rrrrs_joint4_offset_x[i]*rrrrs_x_2_in_axes2_y;
+    /* (rrrrs-rho2_3) squared amplitude */
+    v->rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3;
+    /* (rrrrs-disc_3) discriminant */
+    v->rrrrs_disc_3 = v->rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3;
+    /* (rrrrs-root_3) root, with the sign of the branch */
+    const real rrrrs_root_3 = m->rrrrs_branch_3[i]*root(v->rrrrs_disc_3);
+    /* (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_rrrrs_rho2_3 = 1/v->rrrrs_rho2_3;
+    v->rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3);
+    /* (rrrrs-s_3) sine of the angle of joint 3 from its reference direction */
+    v->rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kd_3*rrrrs_Ks_3 + rrrrs_Kc_3*rrrrs_root_3);
+    /* (rrrrs-h_3) first moment of link 3 about the origin of link 3 */
+    v->rrrrs_h_3_in_axes2_x = v->rrrrs_c_3*m->rrrrs_h_3_in_spec3_x[i] -
+        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_s_3;
     /* (rrrrs-x_4) from the origin of joint 4 to the connection point */
     const real rrrrs_x_4_in_axes3_x =
-        m->inv_rrrrs_size_t[i]*rrrrs_h_3_t_19*m->rrrrs_joint4_offset_x[i] -
+        m->inv_rrrrs_size_t[i]*rrrrs_Kd_3*m->rrrrs_joint4_offset_x[i] -
         m->rrrrs_joint4_offset_x[i];
     /* (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction */
     v->rrrrs_c_4 =
         m->inv_rrrrs_size_t_2[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_x_4_in_axes3_x;
     /* (rrrrs-s_4) sine of the angle of joint 4 from its reference direction */
     v->rrrrs_s_4_t =
-        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*rrrrs_h_3_t_24*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i];
+        m->inv_rrrrs_size_t[i]*m->inv_rrrrs_size_t_2[i]*m->rrrrs_joint4_offset_x[i]*m->rrrrs_platform_joint_offset_x[i]*rrrrs_root_3;
     /* (rrrrs-r_3) from joint 3 to the connection point, along the links */
     v->rrrrs_d_4_in_axes4_x = v->rrrrs_c_4*m->rrrrs_joint4_offset_x[i];
     v->rrrrs_r_3_in_axes4_y = m->rrrrs_joint4_offset_x[i]*v->rrrrs_s_4_t;
     v->rrrrs_r_3_in_axes4_x = m->rrrrs_platform_joint_offset_x[i] + v->rrrrs_d_4_in_axes4_x;
     /* (rrrrs-r_2) from joint 2 to the connection point, along the links */
-    const real rrrrs_r_2_t = v->rrrrs_h_3_t_25*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_r_2_t_2 = v->rrrrs_h_3_t_26*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_r_2_t = v->rrrrs_c_3*m->rrrrs_joint3_offset_x[i];
+    const real rrrrs_r_2_t_2 = m->rrrrs_joint3_offset_x[i]*v->rrrrs_s_3;
     v->rrrrs_d_3_in_axes4_x = v->rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*v->rrrrs_s_4_t;
     v->rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*v->rrrrs_s_4_t - v->rrrrs_c_4*rrrrs_r_2_t_2;
     v->rrrrs_r_2_in_axes4_x = v->rrrrs_r_3_in_axes4_x + v->rrrrs_d_3_in_axes4_x;
     v->rrrrs_r_2_in_axes4_y = v->rrrrs_d_3_in_axes4_y + v->rrrrs_r_3_in_axes4_y;
     /* (rrrrs-v_1) velocity of the connection point per rate of joint 1 */
-    const real rrrrs_v_1_t = v->rrrrs_h_3_t_25*v->rrrrs_h_3_t_6 -
-        v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_7;
-    const real rrrrs_v_1_t_2 = -v->rrrrs_h_3_t_25*v->rrrrs_h_3_t_7 -
-        v->rrrrs_h_3_t_26*v->rrrrs_h_3_t_6;
+    const real rrrrs_v_1_t = v->rrrrs_c_2*v->rrrrs_c_3 - v->rrrrs_s_2*v->rrrrs_s_3;
+    const real rrrrs_v_1_t_2 = -v->rrrrs_c_2*v->rrrrs_s_3 - v->rrrrs_c_3*v->rrrrs_s_2;
     v->rrrrs_e_1_in_axes4_x = v->rrrrs_c_4*rrrrs_v_1_t - v->rrrrs_s_4_t*rrrrs_v_1_t_2;
     v->rrrrs_e_1_in_axes4_y = v->rrrrs_c_4*rrrrs_v_1_t_2 + v->rrrrs_s_4_t*rrrrs_v_1_t;
-    const real rrrrs_v_1_t_3 = rrrrs_h_3_t_10*v->rrrrs_h_3_t_6 + rrrrs_h_3_t_14;
-    const real rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*v->rrrrs_h_3_t_7;
-    const real rrrrs_v_1_t_5 = v->rrrrs_h_3_t_25*rrrrs_v_1_t_3 +
-        v->rrrrs_h_3_t_26*rrrrs_v_1_t_4;
-    const real rrrrs_v_1_t_6 = v->rrrrs_h_3_t_25*rrrrs_v_1_t_4 -
-        v->rrrrs_h_3_t_26*rrrrs_v_1_t_3;
+    const real rrrrs_v_1_t_3 = rrrrs_S_in_turn1_z*v->rrrrs_c_2 + rrrrs_x_3_t;
+    const real rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*v->rrrrs_s_2;
+    const real rrrrs_v_1_t_5 = v->rrrrs_c_3*rrrrs_v_1_t_3 + v->rrrrs_s_3*rrrrs_v_1_t_4;
+    const real rrrrs_v_1_t_6 = v->rrrrs_c_3*rrrrs_v_1_t_4 - v->rrrrs_s_3*rrrrs_v_1_t_3;
     v->rrrrs_v_1_in_axes4_z = v->rrrrs_e_1_in_axes4_x*(v->rrrrs_c_4*rrrrs_v_1_t_6 +
         v->rrrrs_s_4_t*rrrrs_v_1_t_5) - v->rrrrs_e_1_in_axes4_y*(v->rrrrs_c_4*rrrrs_v_1_t_5 -
         v->rrrrs_s_4_t*rrrrs_v_1_t_6);
@@ -2398,12 +2413,10 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_w_1_y = v->axis_z_rrrrs_axes4_y*v->rrrrs_w_1_in_axes4_z;
     v->rrrrs_w_1_z = v->axis_z_rrrrs_axes4_z*v->rrrrs_w_1_in_axes4_z;
     /* (rrrrs-w_3) reciprocal vector 2 */
-    const real rrrrs_w_3_t = v->rrrrs_h_3_t_25*v->rrrrs_s_4_t -
-        v->rrrrs_c_4*v->rrrrs_h_3_t_26;
-    const real rrrrs_w_3_t_2 = v->rrrrs_c_4*v->rrrrs_h_3_t_25 +
-        v->rrrrs_h_3_t_26*v->rrrrs_s_4_t;
-    const real rrrrs_w_3_t_3 = v->rrrrs_h_3_t_6*rrrrs_w_3_t - v->rrrrs_h_3_t_7*rrrrs_w_3_t_2;
-    const real rrrrs_w_3_t_4 = v->rrrrs_h_3_t_6*rrrrs_w_3_t_2 + v->rrrrs_h_3_t_7*rrrrs_w_3_t;
+    const real rrrrs_w_3_t = v->rrrrs_c_3*v->rrrrs_s_4_t - v->rrrrs_c_4*v->rrrrs_s_3;
+    const real rrrrs_w_3_t_2 = v->rrrrs_c_3*v->rrrrs_c_4 + v->rrrrs_s_3*v->rrrrs_s_4_t;
+    const real rrrrs_w_3_t_3 = v->rrrrs_c_2*rrrrs_w_3_t - v->rrrrs_s_2*rrrrs_w_3_t_2;
+    const real rrrrs_w_3_t_4 = v->rrrrs_c_2*rrrrs_w_3_t_2 + v->rrrrs_s_2*rrrrs_w_3_t;
     const real rrrrs_w_3_t_5 = v->rrrrs_c_1*rrrrs_w_3_t_4;
     const real rrrrs_w_3_t_6 = v->rrrrs_s_1*rrrrs_w_3_t_4;
     v->axis_y_rrrrs_axes4_x = m->rrrrs_base_frame_xx[i]*rrrrs_w_3_t_3 +
@@ -2424,12 +2437,12 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_w_3_t_9 = v->axis_x_rrrrs_axes4_y*v->inv_rrrrs_r_3_in_axes4_y;
     v->rrrrs_w_3_t_10 = v->axis_x_rrrrs_axes4_z*v->inv_rrrrs_r_3_in_axes4_y;
     /* (rrrrs-bias) acceleration of the connection point at zero joint accelerations */
-    const real rrrrs_d_2_in_axes2_x = v->rrrrs_h_3_t_6*m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_d_2_in_axes2_y = -v->rrrrs_h_3_t_7*m->rrrrs_joint2_offset_x[i];
-    const real rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_25 +
-        rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_26;
-    const real rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*v->rrrrs_h_3_t_25 -
-        rrrrs_d_2_in_axes2_x*v->rrrrs_h_3_t_26;
+    const real rrrrs_d_2_in_axes2_x = v->rrrrs_c_2*m->rrrrs_joint2_offset_x[i];
+    const real rrrrs_d_2_in_axes2_y = -m->rrrrs_joint2_offset_x[i]*v->rrrrs_s_2;
+    const real rrrrs_bias_t_3 = v->rrrrs_c_3*rrrrs_d_2_in_axes2_x +
+        rrrrs_d_2_in_axes2_y*v->rrrrs_s_3;
+    const real rrrrs_bias_t_4 = v->rrrrs_c_3*rrrrs_d_2_in_axes2_y -
+        rrrrs_d_2_in_axes2_x*v->rrrrs_s_3;
     v->rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*v->rrrrs_c_4 - rrrrs_bias_t_4*v->rrrrs_s_4_t;
     v->rrrrs_d_2_in_axes4_y = rrrrs_bias_t_4*v->rrrrs_c_4 + rrrrs_bias_t_3*v->rrrrs_s_4_t;
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
@@ -2437,14 +2450,12 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
         m->rrrrs_acc_3_t_2[i]*v->rrrrs_s_1;
     v->rrrrs_g_in_axes1_y = m->rrrrs_acc_3_t_2[i]*v->rrrrs_c_1 -
         m->rrrrs_acc_3_t[i]*v->rrrrs_s_1;
-    const real rrrrs_g_in_axes2_x = m->rrrrs_g_in_axes1_z[i]*v->rrrrs_h_3_t_6 +
-        v->rrrrs_g_in_axes1_x*v->rrrrs_h_3_t_7;
-    const real rrrrs_g_in_axes2_y = v->rrrrs_g_in_axes1_x*v->rrrrs_h_3_t_6 -
-        m->rrrrs_g_in_axes1_z[i]*v->rrrrs_h_3_t_7;
-    v->rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_25 +
-        rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_26;
-    v->rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*v->rrrrs_h_3_t_25 -
-        rrrrs_g_in_axes2_x*v->rrrrs_h_3_t_26;
+    const real rrrrs_g_in_axes2_x = v->rrrrs_c_2*m->rrrrs_g_in_axes1_z[i] +
+        v->rrrrs_g_in_axes1_x*v->rrrrs_s_2;
+    const real rrrrs_g_in_axes2_y = v->rrrrs_c_2*v->rrrrs_g_in_axes1_x -
+        m->rrrrs_g_in_axes1_z[i]*v->rrrrs_s_2;
+    v->rrrrs_g_in_axes3_x = v->rrrrs_c_3*rrrrs_g_in_axes2_x + rrrrs_g_in_axes2_y*v->rrrrs_s_3;
+    v->rrrrs_g_in_axes3_y = v->rrrrs_c_3*rrrrs_g_in_axes2_y - rrrrs_g_in_axes2_x*v->rrrrs_s_3;
     /* (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity */
     v->rrrrs_g_in_axes4_x = v->axis_x_rrrrs_axes4_x*m->gravity_x +
         v->axis_x_rrrrs_axes4_y*m->gravity_y + v->axis_x_rrrrs_axes4_z*m->gravity_z;
@@ -2453,8 +2464,8 @@ INLINE void stage_rrrrs_X(const prepared *m, size_t w, size_t i, size_t j, const
     v->rrrrs_g_in_axes4_z = v->axis_z_rrrrs_axes4_x*m->gravity_x +
         v->axis_z_rrrrs_axes4_y*m->gravity_y + v->axis_z_rrrrs_axes4_z*m->gravity_z;
     /* (rrrrs-P_c_3) force that accelerates joint 3, per unit */
-    v->rrrrs_P_c_3_in_axes2_x = -m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_h_3_t_26 -
-        m->rrrrs_h_3_in_spec3_y[i]*v->rrrrs_h_3_t_25;
+    v->rrrrs_P_c_3_in_axes2_x = -v->rrrrs_c_3*m->rrrrs_h_3_in_spec3_y[i] -
+        m->rrrrs_h_3_in_spec3_x[i]*v->rrrrs_s_3;
     /* (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->rrrrs_mu_2_t_5 = v->rrrrs_g_in_axes1_y*m->rrrrs_h_2_in_spec2_y[i] -
         rrrrs_g_in_axes2_y*m->rrrrs_h_2_in_spec2_z[i];
@@ -2529,12 +2540,12 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
         v->axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
         v->axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z + v->rrrrs_qd_3_t*v->rrrrs_r_3_in_axes4_x);
     /* (rrrrs-omega_1) angular velocity of link 1 */
-    const real rrrrs_omega_1_in_axes2_x = v->rrrrs_h_3_t_6*v->rrrrs_qd_1;
-    const real rrrrs_omega_1_in_axes2_y = -v->rrrrs_h_3_t_7*v->rrrrs_qd_1;
-    const real rrrrs_omega_1_t = v->rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x +
-        v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y;
-    const real rrrrs_omega_1_t_2 = v->rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y -
-        v->rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x;
+    const real rrrrs_omega_1_in_axes2_x = v->rrrrs_c_2*v->rrrrs_qd_1;
+    const real rrrrs_omega_1_in_axes2_y = -v->rrrrs_qd_1*v->rrrrs_s_2;
+    const real rrrrs_omega_1_t = v->rrrrs_c_3*rrrrs_omega_1_in_axes2_x +
+        rrrrs_omega_1_in_axes2_y*v->rrrrs_s_3;
+    const real rrrrs_omega_1_t_2 = v->rrrrs_c_3*rrrrs_omega_1_in_axes2_y -
+        rrrrs_omega_1_in_axes2_x*v->rrrrs_s_3;
     const real rrrrs_omega_1_in_axes4_x = v->rrrrs_c_4*rrrrs_omega_1_t -
         rrrrs_omega_1_t_2*v->rrrrs_s_4_t;
     const real rrrrs_omega_1_in_axes4_y = v->rrrrs_c_4*rrrrs_omega_1_t_2 +
@@ -2568,11 +2579,10 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     v->rrrrs_zeta_3_t = rrrrs_omega_1_t_2*v->rrrrs_qd_3_t;
     v->rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*v->rrrrs_qd_3_t;
     /* (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-    const real rrrrs_beta_3_in_axes3_x = v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_25 -
-        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_26 - v->rrrrs_zeta_3_t;
+    const real rrrrs_beta_3_in_axes3_x = v->rrrrs_W_2_in_axes2_yz*v->rrrrs_c_3 -
+        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_s_3 - v->rrrrs_zeta_3_t;
     const real rrrrs_beta_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y -
-        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_h_3_t_25 -
-        v->rrrrs_W_2_in_axes2_yz*v->rrrrs_h_3_t_26;
+        v->rrrrs_W_2_in_axes2_xz*v->rrrrs_c_3 - v->rrrrs_W_2_in_axes2_yz*v->rrrrs_s_3;
     const real rrrrs_beta_3_in_axes4_y = rrrrs_beta_3_in_axes3_x*v->rrrrs_s_4_t +
         rrrrs_beta_3_in_axes3_y*v->rrrrs_c_4;
     /* (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
@@ -2608,8 +2618,8 @@ INLINE void stage_rrrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, con
     const real rrrrs_a_o_3_in_axes2_x = -m->rrrrs_joint3_offset_x[i]*(v->rrrrs_bias_t +
         rrrrs_a_o_3_t);
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_25;
-    v->rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*v->rrrrs_h_3_t_26;
+    v->rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*v->rrrrs_c_3;
+    v->rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*v->rrrrs_s_3;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
     const real rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t;
     const real rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2;
@@ -2684,8 +2694,8 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-qdd_3_o) remainder of: acceleration of joint 3 */
     const real rrrrs_qdd_3_o_t = v->inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x;
     /* (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real rrrrs_alpha_1_o_in_axes2_x = v->rrrrs_h_3_t_6*rrrrs_qdd_1_o;
-    const real rrrrs_alpha_1_o_in_axes2_y = -v->rrrrs_h_3_t_7*rrrrs_qdd_1_o;
+    const real rrrrs_alpha_1_o_in_axes2_x = v->rrrrs_c_2*rrrrs_qdd_1_o;
+    const real rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*v->rrrrs_s_2;
     /* (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrrrs_alpha_2_o_in_axes2_x = v->rrrrs_W_2_in_axes2_yz +
         rrrrs_alpha_1_o_in_axes2_x;
@@ -2697,11 +2707,10 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_B_2_o_in_axes2_zy = v->rrrrs_W_2_in_axes2_yz +
         rrrrs_alpha_2_o_in_axes2_x;
     /* (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3 */
-    const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_25 -
-        v->rrrrs_zeta_3_t + rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_26;
+    const real rrrrs_alpha_3_o_in_axes3_x = rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_c_3 -
+        v->rrrrs_zeta_3_t + rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_s_3;
     const real rrrrs_alpha_3_o_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
-        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_h_3_t_25 -
-        rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_h_3_t_26;
+        rrrrs_alpha_2_o_in_axes2_y*v->rrrrs_c_3 - rrrrs_alpha_2_o_in_axes2_x*v->rrrrs_s_3;
     /* (rrrrs-B_3_o) remainder of the acceleration tensor of link 3 */
     const real rrrrs_B_3_o_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t;
     const real rrrrs_B_3_o_in_axes3_xz = v->rrrrs_W_3_in_axes3_xz +
@@ -2737,9 +2746,9 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     const real rrrrs_a_o_3_o_in_axes2_y =
         v->rrrrs_W_2_in_axes2_xy*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity */
-    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_26 -
+    const real rrrrs_acc_3_o_in_axes3_x = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_s_3 -
         v->rrrrs_g_in_axes3_x + v->rrrrs_acc_3_t_3;
-    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_h_3_t_25 -
+    const real rrrrs_acc_3_o_in_axes3_y = rrrrs_a_o_3_o_in_axes2_y*v->rrrrs_c_3 -
         v->rrrrs_g_in_axes3_y + v->rrrrs_acc_3_t_4;
     const real rrrrs_acc_3_o_in_axes3_z = rrrrs_B_2_o_in_axes2_zx*m->rrrrs_joint3_offset_x[i]
         - v->rrrrs_g_in_axes1_y;
@@ -2826,13 +2835,13 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the
        connection point left out */
     const real rrrrs_N_2_o_in_axes2_x = rrrrs_mu_2_o_in_axes2_x +
-        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_25 - rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_26;
+        rrrrs_N_3_o_in_axes3_x*v->rrrrs_c_3 - rrrrs_N_3_o_in_axes3_y*v->rrrrs_s_3;
     const real rrrrs_N_2_o_in_axes2_y = rrrrs_mu_2_o_in_axes2_y -
         rrrrs_f_3_o_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_N_3_o_in_axes3_x*v->rrrrs_h_3_t_26 + rrrrs_N_3_o_in_axes3_y*v->rrrrs_h_3_t_25;
+        rrrrs_N_3_o_in_axes3_x*v->rrrrs_s_3 + rrrrs_N_3_o_in_axes3_y*v->rrrrs_c_3;
     const real rrrrs_N_2_o_in_axes2_z = rrrrs_mu_2_o_in_axes2_z +
-        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_o_in_axes3_x*v->rrrrs_h_3_t_26 +
-        rrrrs_f_3_o_in_axes3_y*v->rrrrs_h_3_t_25) + rrrrs_N_3_o_in_axes3_z;
+        m->rrrrs_joint3_offset_x[i]*(v->rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
+        rrrrs_f_3_o_in_axes3_x*v->rrrrs_s_3) + rrrrs_N_3_o_in_axes3_z;
     /* (rrrrs-mu_1_o) remainder of: inertia moment of the links that turn with link 1, about their
        reference points */
     const real rrrrs_mu_1_o_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*rrrrs_qdd_1_o -
@@ -2840,7 +2849,7 @@ INLINE void stage_rrrrs_Z_dynamics(const prepared *m, size_t i, values_rrrrs *v)
     /* (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrrs_N_1_o_in_axes1_z = rrrrs_mu_1_o_in_axes1_z +
-        rrrrs_N_2_o_in_axes2_x*v->rrrrs_h_3_t_6 - rrrrs_N_2_o_in_axes2_y*v->rrrrs_h_3_t_7;
+        rrrrs_N_2_o_in_axes2_x*v->rrrrs_c_2 - rrrrs_N_2_o_in_axes2_y*v->rrrrs_s_2;
     /* (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
@@ -2905,35 +2914,35 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         v->rrrrs_c_4*(m->rrrrs_J_4_in_spec4_yy[i]*v->rrrrs_c_4 - rrrrs_Jc_3_t);
     const real rrrrs_Jc_3_in_axes3_yz = m->rrrrs_J_3_in_spec3_yz[i] +
         m->rrrrs_J_4_in_spec4_yz[i]*v->rrrrs_c_4 - m->rrrrs_J_4_in_spec4_xz[i]*v->rrrrs_s_4_t;
-    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_25 -
-        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_h_3_t_26 +
-        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_h_3_t_25;
+    const real rrrrs_Jc_3_in_axes2_xz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_c_3 -
+        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_s_3;
+    const real rrrrs_Jc_3_in_axes2_yz = rrrrs_Jc_3_in_axes3_xz*v->rrrrs_s_3 +
+        rrrrs_Jc_3_in_axes3_yz*v->rrrrs_c_3;
     /* (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
     const real rrrrs_L_c_3_2_in_axes2_z = m->rrrrs_Jc_3_in_axes3_zz[i] +
         v->rrrrs_h_3_in_axes2_x*m->rrrrs_joint3_offset_x[i];
-    const real rrrrs_L_c_3_2_in_axes1_z = rrrrs_Jc_3_in_axes2_xz*v->rrrrs_h_3_t_6 -
-        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_h_3_t_7;
+    const real rrrrs_L_c_3_2_in_axes1_z = rrrrs_Jc_3_in_axes2_xz*v->rrrrs_c_2 -
+        rrrrs_Jc_3_in_axes2_yz*v->rrrrs_s_2;
     /* (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
        about the connection point */
-    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_26;
-    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2;
-    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_h_3_t_25;
-    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_26;
+    const real rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_s_3;
+    const real rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*v->rrrrs_c_3 - rrrrs_Jc_2_t_2;
+    const real rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*v->rrrrs_c_3;
+    const real rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*v->rrrrs_s_3;
     const real rrrrs_Jc_2_t_6 = m->rrrrs_joint3_offset_x[i]*(m->rrrrs_Jc_2_t[i] +
         v->rrrrs_h_3_in_axes2_x);
     const real rrrrs_Jc_2_t_7 = 2*rrrrs_Jc_2_t_6;
     const real rrrrs_Jc_2_in_axes2_xy = m->rrrrs_J_2_in_spec2_xy[i] +
-        v->rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_25;
+        v->rrrrs_P_c_3_in_axes2_x*m->rrrrs_joint3_offset_x[i] + rrrrs_Jc_2_t_3*v->rrrrs_s_3 +
+        rrrrs_Jc_2_t_5*v->rrrrs_c_3;
     const real rrrrs_Jc_2_in_axes1_zz =
-        v->rrrrs_h_3_t_6*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
-        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_h_3_t_25 -
-        rrrrs_Jc_2_t_5*v->rrrrs_h_3_t_26) - rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_7) -
-        v->rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_h_3_t_6 -
-        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
-        v->rrrrs_h_3_t_25*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_h_3_t_25 + rrrrs_Jc_2_t_2) +
-        v->rrrrs_h_3_t_26*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_h_3_t_26 + rrrrs_Jc_2_t_4)));
+        v->rrrrs_c_2*(v->rrrrs_c_2*(m->rrrrs_J_2_in_spec2_xx[i] + rrrrs_Jc_2_t_7 -
+        2*rrrrs_Jc_2_t_6 + rrrrs_Jc_2_t_3*v->rrrrs_c_3 - rrrrs_Jc_2_t_5*v->rrrrs_s_3) -
+        rrrrs_Jc_2_in_axes2_xy*v->rrrrs_s_2) -
+        v->rrrrs_s_2*(rrrrs_Jc_2_in_axes2_xy*v->rrrrs_c_2 -
+        v->rrrrs_s_2*(m->rrrrs_J_2_in_spec2_yy[i] + rrrrs_Jc_2_t_7 +
+        v->rrrrs_c_3*(rrrrs_Jc_3_in_axes3_yy*v->rrrrs_c_3 + rrrrs_Jc_2_t_2) +
+        v->rrrrs_s_3*(rrrrs_Jc_3_in_axes3_xx*v->rrrrs_s_3 + rrrrs_Jc_2_t_4)));
     /* (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
        inertia and weight */
     const real rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*v->rrrrs_w_1_in_axes4_z;
@@ -3034,9 +3043,9 @@ INLINE void stage_rrrrs_M_dynamics(const prepared *m, size_t i, values_rrrrs *v)
         m->rrrrs_d_G_in_axes4_yy[i]*v->rrrrs_r_2_in_axes4_x +
         rrrrs_d_G_in_axes4_xy*v->rrrrs_r_2_in_axes4_y;
     const real rrrrs_d_P_2_in_axes4_z =
-        v->rrrrs_w_1_in_axes4_z*(v->rrrrs_h_3_t_6*(m->rrrrs_J_2_in_spec2_xz[i] -
+        v->rrrrs_w_1_in_axes4_z*(v->rrrrs_c_2*(m->rrrrs_J_2_in_spec2_xz[i] -
         m->rrrrs_d_P_2_t[i] + rrrrs_Jc_3_in_axes2_xz) -
-        v->rrrrs_h_3_t_7*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
+        v->rrrrs_s_2*(m->rrrrs_J_2_in_spec2_yz[i] + rrrrs_Jc_3_in_axes2_yz)) +
         v->rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
         v->inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*v->rrrrs_w_1_in_axes4_z) -
         rrrrs_d_Gamma_4_in_axes4_z*v->rrrrs_r_2_in_axes4_x*m->rrrrs_w_4_in_axes4_y[i];
@@ -3082,8 +3091,8 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     *A, values_rrrrs *v)
 {
     /* (rrrrs-alpha_1) angular acceleration of link 1 */
-    v->rrrrs_alpha_1_in_axes2_x = v->rrrrs_h_3_t_6*v->rrrrs_qdd_1;
-    v->rrrrs_alpha_1_in_axes2_y = -v->rrrrs_h_3_t_7*v->rrrrs_qdd_1;
+    v->rrrrs_alpha_1_in_axes2_x = v->rrrrs_c_2*v->rrrrs_qdd_1;
+    v->rrrrs_alpha_1_in_axes2_y = -v->rrrrs_qdd_1*v->rrrrs_s_2;
     /* (rrrrs-alpha_2) angular acceleration of link 2 */
     const real rrrrs_alpha_2_in_axes2_x = v->rrrrs_W_2_in_axes2_yz +
         v->rrrrs_alpha_1_in_axes2_x;
@@ -3096,11 +3105,10 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     const real rrrrs_B_2_in_axes2_zx = v->rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y;
     const real rrrrs_B_2_in_axes2_zy = v->rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x;
     /* (rrrrs-alpha_3) angular acceleration of link 3 */
-    const real rrrrs_alpha_3_in_axes3_x = rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_25 -
-        v->rrrrs_zeta_3_t + rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_26;
+    const real rrrrs_alpha_3_in_axes3_x = rrrrs_alpha_2_in_axes2_x*v->rrrrs_c_3 -
+        v->rrrrs_zeta_3_t + rrrrs_alpha_2_in_axes2_y*v->rrrrs_s_3;
     const real rrrrs_alpha_3_in_axes3_y = v->rrrrs_zeta_3_in_axes3_y +
-        rrrrs_alpha_2_in_axes2_y*v->rrrrs_h_3_t_25 -
-        rrrrs_alpha_2_in_axes2_x*v->rrrrs_h_3_t_26;
+        rrrrs_alpha_2_in_axes2_y*v->rrrrs_c_3 - rrrrs_alpha_2_in_axes2_x*v->rrrrs_s_3;
     const real rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - v->rrrrs_qdd_3_t;
     /* (rrrrs-B_3) acceleration tensor of link 3 */
     v->rrrrs_B_3_in_axes3_xy = v->rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z;
@@ -3125,10 +3133,10 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     /* (rrrrs-a_o_3) acceleration of the origin of joint 3 */
     const real rrrrs_a_o_3_in_axes2_y = v->rrrrs_B_2_in_axes2_yx*m->rrrrs_joint3_offset_x[i];
     /* (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-    v->rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_26 -
-        v->rrrrs_g_in_axes3_x + v->rrrrs_acc_3_t_3;
-    v->rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_h_3_t_25 -
-        v->rrrrs_g_in_axes3_y + v->rrrrs_acc_3_t_4;
+    v->rrrrs_acc_3_in_axes3_x = rrrrs_a_o_3_in_axes2_y*v->rrrrs_s_3 - v->rrrrs_g_in_axes3_x +
+        v->rrrrs_acc_3_t_3;
+    v->rrrrs_acc_3_in_axes3_y = rrrrs_a_o_3_in_axes2_y*v->rrrrs_c_3 - v->rrrrs_g_in_axes3_y +
+        v->rrrrs_acc_3_t_4;
     const real rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*m->rrrrs_joint3_offset_x[i] -
         v->rrrrs_g_in_axes1_y;
     /* (rrrrs-f_3) inertia force of link 3 less its weight */
@@ -3200,17 +3208,17 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_x = rrrrs_mu_2_in_axes2_x +
-        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_25 - rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_26;
+        rrrrs_N_3_in_axes3_x*v->rrrrs_c_3 - rrrrs_N_3_in_axes3_y*v->rrrrs_s_3;
     const real rrrrs_N_2_in_axes2_y = rrrrs_mu_2_in_axes2_y -
-        rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_N_3_in_axes3_x*v->rrrrs_h_3_t_26 + rrrrs_N_3_in_axes3_y*v->rrrrs_h_3_t_25;
+        rrrrs_f_3_in_axes3_z*m->rrrrs_joint3_offset_x[i] + rrrrs_N_3_in_axes3_x*v->rrrrs_s_3 +
+        rrrrs_N_3_in_axes3_y*v->rrrrs_c_3;
     /* (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
     const real rrrrs_mu_1_in_axes1_z = m->rrrrs_J_1_in_spec1_xx[i]*v->rrrrs_qdd_1 -
         v->rrrrs_mu_1_t;
     /* (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
        point left out */
     const real rrrrs_N_1_in_axes1_z = rrrrs_mu_1_in_axes1_z +
-        rrrrs_N_2_in_axes2_x*v->rrrrs_h_3_t_6 - rrrrs_N_2_in_axes2_y*v->rrrrs_h_3_t_7;
+        rrrrs_N_2_in_axes2_x*v->rrrrs_c_2 - rrrrs_N_2_in_axes2_y*v->rrrrs_s_2;
     /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     v->rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*m->rrrrs_w_4_in_axes4_y[i];
@@ -3229,34 +3237,34 @@ INLINE void stage_rrrrs_legs_required(const prepared *m, size_t w, size_t i, siz
 }
 
 typedef struct {
-    real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_h_2_t_9, rrrs_h_2_t_16, rrrs_h_2_t_17, rrrs_h_2_t_19,
-        rrrs_h_2_t_20, rrrs_c_1, rrrs_s_1, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x,
-        rrrs_e_1_in_axes3_y, axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z,
-        axis_y_rrrs_axes3_x, axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x,
-        axis_x_rrrs_axes3_y, axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y,
-        rrrs_r_2_in_axes3_x, rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y,
-        rrrs_w_1_z, rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t,
-        rrrs_bias_t_2, rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x,
-        rrrs_g_in_axes1_y, rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x,
-        rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3,
-        rrrs_S_dot_t_4, rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz,
-        rrrs_W_2_in_axes2_xy, rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz,
-        rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x,
-        rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6,
-        rrrs_mu_2_t_6, rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3,
-        rrrs_S_ddot_in_axes3_x, rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1,
-        rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
-        rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x,
-        rrrs_c_in_axes3_y, rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz,
-        rrrs_Q_yz, rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6,
-        rrrs_M_ta_t_7, rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3,
-        rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6;
+    real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_rho2_1, rrrs_c_1, rrrs_s_1, rrrs_rho2_2, rrrs_disc_2,
+        rrrs_c_2, rrrs_s_2, rrrs_c_3, rrrs_s_3_t, rrrs_e_1_in_axes3_x, rrrs_e_1_in_axes3_y,
+        axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z, axis_y_rrrs_axes3_x,
+        axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x, axis_x_rrrs_axes3_y,
+        axis_x_rrrs_axes3_z, rrrs_d_3_in_axes3_x, rrrs_r_2_in_axes3_y, rrrs_r_2_in_axes3_x,
+        rrrs_v_1_in_axes3_z, rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y, rrrs_w_1_z,
+        rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t, rrrs_bias_t_2,
+        rrrs_g_in_axes3_x, rrrs_g_in_axes3_y, rrrs_g_in_axes3_z, rrrs_g_in_axes1_x, rrrs_g_in_axes1_y,
+        rrrs_mu_2_t_9, rrrs_mu_2_t_10, rrrs_mu_2_t_11, rrrs_mu_1_t, rrrs_H_a_1_x, rrrs_H_a_1_y,
+        rrrs_H_a_1_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z, rrrs_S_dot_t_3, rrrs_S_dot_t_4,
+        rrrs_S_dot_t_5, rrrs_qd_1, rrrs_qd_2, rrrs_qd_3, rrrs_W_2_in_axes2_yz, rrrs_W_2_in_axes2_xy,
+        rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz, rrrs_W_3_in_axes3_yz, rrrs_zeta_2_in_axes2_y,
+        rrrs_zeta_3_in_axes3_x, rrrs_zeta_3_t, rrrs_bias_in_axes3_x, rrrs_bias_in_axes3_y,
+        rrrs_bias_in_axes3_z, rrrs_mu_3_t_4, rrrs_mu_3_t_5, rrrs_mu_3_t_6, rrrs_mu_2_t_6,
+        rrrs_mu_2_t_7, rrrs_mu_2_t_8, rrrs_c_t, rrrs_c_t_2, rrrs_c_t_3, rrrs_S_ddot_in_axes3_x,
+        rrrs_S_ddot_in_axes3_y, rrrs_S_ddot_in_axes3_z, rrrs_qdd_1, rrrs_qdd_2, rrrs_qdd_3, rrrs_U_x,
+        rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3, rrrs_acc_3_in_axes3_x,
+        rrrs_acc_3_in_axes3_y, rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x, rrrs_c_in_axes3_y,
+        rrrs_c_in_axes3_z, rrrs_Q_xx, rrrs_Q_yy, rrrs_Q_t_13, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yz,
+        rrrs_M_ta_t, rrrs_M_ta_t_2, rrrs_M_ta_t_3, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_7,
+        rrrs_M_ta_t_8, rrrs_M_ta_t_9, rrrs_M_aa_t, rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4,
+        rrrs_M_aa_t_5, rrrs_M_aa_t_6;
 } values_rrrs;
 
 INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
     real *X, values_rrrs *v)
 {
-    /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
+    /* (rrrs-S) from the base point to the connection point */
     const real R_xx = s[0*w + j];
     const real R_xy = s[1*w + j];
     const real R_xz = s[2*w + j];
@@ -3273,50 +3281,61 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_q_z = R_zx*m->rrrs_platform_point_x[i] + R_zy*m->rrrs_platform_point_y[i] +
         R_zz*m->rrrs_platform_point_z[i];
     const real t_x = X[0*w + j];
-    const real rrrs_h_2_t_3 = t_x - m->rrrs_base_point_x[i] + v->rrrs_q_x;
+    const real rrrs_S_x = t_x - m->rrrs_base_point_x[i] + v->rrrs_q_x;
     const real t_y = X[1*w + j];
-    const real rrrs_h_2_t_4 = t_y - m->rrrs_base_point_y[i] + v->rrrs_q_y;
+    const real rrrs_S_y = t_y - m->rrrs_base_point_y[i] + v->rrrs_q_y;
     const real t_z = X[2*w + j];
-    const real rrrs_h_2_t_5 = t_z - m->rrrs_base_point_z[i] + v->rrrs_q_z;
-    const real rrrs_h_2_t_6 = m->rrrs_base_frame_xy[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yy[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zy[i]*rrrs_h_2_t_5;
-    const real rrrs_h_2_t_7 = m->rrrs_base_frame_xz[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yz[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zz[i]*rrrs_h_2_t_5;
-    const real rrrs_h_2_t_8 = m->rrrs_base_frame_xx[i]*rrrs_h_2_t_3 +
-        m->rrrs_base_frame_yx[i]*rrrs_h_2_t_4 + m->rrrs_base_frame_zx[i]*rrrs_h_2_t_5;
-    v->rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7;
-    const real rrrs_h_2_t_10 = m->rrrs_branch_1[i]*root(v->rrrs_h_2_t_9);
-    const real rrrs_h_2_t_11 = rrrs_h_2_t_8 - m->rrrs_joint2_offset_x[i];
-    const real rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + v->rrrs_h_2_t_9;
-    const real rrrs_h_2_t_13 = m->rrrs_h_2_t[i] - m->rrrs_h_2_t_2[i] + R(0.5)*rrrs_h_2_t_12;
-    const real rrrs_h_2_t_14 = rrrs_h_2_t_11*m->rrrs_joint3_offset_x[i];
-    const real rrrs_h_2_t_15 = rrrs_h_2_t_10*m->rrrs_joint3_offset_x[i];
-    v->rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15;
-    v->rrrs_h_2_t_17 = v->rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13;
-    const real rrrs_h_2_t_18 = m->rrrs_branch_2[i]*root(v->rrrs_h_2_t_17);
-    const real inv_rrrs_h_2_t_16 = 1/v->rrrs_h_2_t_16;
-    v->rrrs_h_2_t_19 = inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 -
-        rrrs_h_2_t_15*rrrs_h_2_t_18);
-    v->rrrs_h_2_t_20 = inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 +
-        rrrs_h_2_t_14*rrrs_h_2_t_18);
+    const real rrrs_S_z = t_z - m->rrrs_base_point_z[i] + v->rrrs_q_z;
+    const real rrrs_S_in_turn1_x = rrrs_S_x*m->rrrs_base_frame_xy[i] +
+        rrrs_S_y*m->rrrs_base_frame_yy[i] + rrrs_S_z*m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*m->rrrs_base_frame_xz[i] +
+        rrrs_S_y*m->rrrs_base_frame_yz[i] + rrrs_S_z*m->rrrs_base_frame_zz[i];
+    const real rrrs_S_in_turn1_z = rrrs_S_x*m->rrrs_base_frame_xx[i] +
+        rrrs_S_y*m->rrrs_base_frame_yx[i] + rrrs_S_z*m->rrrs_base_frame_zx[i];
+    /* (rrrs-rho2_1) squared amplitude */
+    v->rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
+        rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
+    /* (rrrs-root_1) root, with the sign of the branch */
+    const real rrrs_root_1 = m->rrrs_branch_1[i]*root(v->rrrs_rho2_1);
     /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-    const real inv_rrrs_h_2_t_9 = 1/v->rrrs_h_2_t_9;
-    v->rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6;
+    const real inv_rrrs_rho2_1 = 1/v->rrrs_rho2_1;
+    v->rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1;
     /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-    v->rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7;
+    v->rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
+    /* (rrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - m->rrrs_joint2_offset_x[i];
+    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real rrrs_Kd_2_t_3 = v->rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kd_2 = m->rrrs_Kd_2_t[i] - m->rrrs_Kd_2_t_2[i] + R(0.5)*rrrs_Kd_2_t_3;
+    /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real rrrs_Kc_2 = m->rrrs_joint3_offset_x[i]*rrrs_x_2_in_axes1_z;
+    /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
+    const real rrrs_Ks_2 = m->rrrs_joint3_offset_x[i]*rrrs_root_1;
+    /* (rrrs-rho2_2) squared amplitude */
+    v->rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
+    /* (rrrs-disc_2) discriminant */
+    v->rrrs_disc_2 = v->rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
+    /* (rrrs-root_2) root, with the sign of the branch */
+    const real rrrs_root_2 = m->rrrs_branch_2[i]*root(v->rrrs_disc_2);
+    /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrrs_rho2_2 = 1/v->rrrs_rho2_2;
+    v->rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
+    /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+    v->rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kd_2*rrrs_Ks_2 + rrrs_Kc_2*rrrs_root_2);
     /* (rrrs-x_3) from the origin of joint 3 to the connection point */
     const real rrrs_x_3_in_axes2_x =
-        m->inv_rrrs_size_t[i]*rrrs_h_2_t_13*m->rrrs_joint3_offset_x[i] -
+        m->inv_rrrs_size_t[i]*rrrs_Kd_2*m->rrrs_joint3_offset_x[i] -
         m->rrrs_joint3_offset_x[i];
     /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
     v->rrrs_c_3 =
         m->inv_rrrs_size_t_2[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_x_3_in_axes2_x;
     /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
     v->rrrs_s_3_t =
-        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*rrrs_h_2_t_18*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i];
+        m->inv_rrrs_size_t[i]*m->inv_rrrs_size_t_2[i]*m->rrrs_joint3_offset_x[i]*m->rrrs_platform_joint_offset_x[i]*rrrs_root_2;
     /* (rrrs-S_dot) velocity of the connection point */
-    v->rrrs_e_1_in_axes3_x = v->rrrs_c_3*v->rrrs_h_2_t_19 + v->rrrs_h_2_t_20*v->rrrs_s_3_t;
-    v->rrrs_e_1_in_axes3_y = v->rrrs_h_2_t_19*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_h_2_t_20;
+    v->rrrs_e_1_in_axes3_x = v->rrrs_c_2*v->rrrs_c_3 + v->rrrs_s_2*v->rrrs_s_3_t;
+    v->rrrs_e_1_in_axes3_y = v->rrrs_c_2*v->rrrs_s_3_t - v->rrrs_c_3*v->rrrs_s_2;
     v->axis_z_rrrs_axes3_x = m->rrrs_base_frame_xz[i]*v->rrrs_c_1 -
         m->rrrs_base_frame_xy[i]*v->rrrs_s_1;
     v->axis_z_rrrs_axes3_y = m->rrrs_base_frame_yz[i]*v->rrrs_c_1 -
@@ -3342,8 +3361,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_r_2_in_axes3_y = m->rrrs_joint3_offset_x[i]*v->rrrs_s_3_t;
     v->rrrs_r_2_in_axes3_x = m->rrrs_platform_joint_offset_x[i] + v->rrrs_d_3_in_axes3_x;
     /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-    const real rrrs_v_1_t = rrrs_h_2_t_10*v->rrrs_h_2_t_20 + v->rrrs_h_2_t_19*rrrs_h_2_t_8;
-    const real rrrs_v_1_t_2 = rrrs_h_2_t_10*v->rrrs_h_2_t_19 - v->rrrs_h_2_t_20*rrrs_h_2_t_8;
+    const real rrrs_v_1_t = rrrs_S_in_turn1_z*v->rrrs_c_2 + rrrs_root_1*v->rrrs_s_2;
+    const real rrrs_v_1_t_2 = v->rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*v->rrrs_s_2;
     v->rrrs_v_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*(v->rrrs_c_3*rrrs_v_1_t_2 +
         v->rrrs_s_3_t*rrrs_v_1_t) - v->rrrs_e_1_in_axes3_y*(v->rrrs_c_3*rrrs_v_1_t -
         v->rrrs_s_3_t*rrrs_v_1_t_2);
@@ -3358,8 +3377,8 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     v->rrrs_w_2_y = v->axis_x_rrrs_axes3_y*v->rrrs_w_2_in_axes3_x;
     v->rrrs_w_2_z = v->axis_x_rrrs_axes3_z*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-    v->rrrs_bias_t = v->rrrs_h_2_t_19*m->rrrs_joint2_offset_x[i];
-    v->rrrs_bias_t_2 = v->rrrs_h_2_t_20*m->rrrs_joint2_offset_x[i];
+    v->rrrs_bias_t = v->rrrs_c_2*m->rrrs_joint2_offset_x[i];
+    v->rrrs_bias_t_2 = m->rrrs_joint2_offset_x[i]*v->rrrs_s_2;
     /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
     v->rrrs_g_in_axes3_x = v->axis_x_rrrs_axes3_x*m->gravity_x +
         v->axis_x_rrrs_axes3_y*m->gravity_y + v->axis_x_rrrs_axes3_z*m->gravity_z;
@@ -3370,10 +3389,10 @@ INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const 
     /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
     v->rrrs_g_in_axes1_x = v->rrrs_c_1*m->rrrs_mu_2_t[i] + m->rrrs_mu_2_t_2[i]*v->rrrs_s_1;
     v->rrrs_g_in_axes1_y = v->rrrs_c_1*m->rrrs_mu_2_t_2[i] - m->rrrs_mu_2_t[i]*v->rrrs_s_1;
-    const real rrrs_g_in_axes2_x = v->rrrs_g_in_axes1_x*v->rrrs_h_2_t_20 +
-        m->rrrs_g_in_axes1_z[i]*v->rrrs_h_2_t_19;
-    const real rrrs_g_in_axes2_y = v->rrrs_g_in_axes1_x*v->rrrs_h_2_t_19 -
-        m->rrrs_g_in_axes1_z[i]*v->rrrs_h_2_t_20;
+    const real rrrs_g_in_axes2_x = v->rrrs_c_2*m->rrrs_g_in_axes1_z[i] +
+        v->rrrs_g_in_axes1_x*v->rrrs_s_2;
+    const real rrrs_g_in_axes2_y = v->rrrs_c_2*v->rrrs_g_in_axes1_x -
+        m->rrrs_g_in_axes1_z[i]*v->rrrs_s_2;
     v->rrrs_mu_2_t_9 = v->rrrs_g_in_axes1_y*m->rrrs_h_2_in_spec2_y[i] -
         rrrs_g_in_axes2_y*m->rrrs_h_2_in_spec2_z[i];
     v->rrrs_mu_2_t_10 = rrrs_g_in_axes2_x*m->rrrs_h_2_in_spec2_z[i] -
@@ -3421,8 +3440,8 @@ INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, cons
         v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z -
         v->rrrs_qd_2*v->rrrs_r_2_in_axes3_x);
     /* (rrrs-omega_1) angular velocity of link 1 */
-    const real rrrs_omega_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qd_1;
-    const real rrrs_omega_1_in_axes2_y = -v->rrrs_h_2_t_20*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes2_x = v->rrrs_c_2*v->rrrs_qd_1;
+    const real rrrs_omega_1_in_axes2_y = -v->rrrs_qd_1*v->rrrs_s_2;
     const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x -
         rrrs_omega_1_in_axes2_y*v->rrrs_s_3_t;
     const real rrrs_omega_1_in_axes3_y = v->rrrs_c_3*rrrs_omega_1_in_axes2_y +
@@ -3554,8 +3573,8 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-qdd_2_o) remainder of: acceleration of joint 2 */
     const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v->rrrs_w_2_in_axes3_x;
     /* (rrrs-alpha_1_o) remainder of: angular acceleration of link 1 */
-    const real rrrs_alpha_1_o_in_axes2_x = v->rrrs_h_2_t_19*rrrs_qdd_1_o;
-    const real rrrs_alpha_1_o_t = v->rrrs_h_2_t_20*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_in_axes2_x = v->rrrs_c_2*rrrs_qdd_1_o;
+    const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v->rrrs_s_2;
     /* (rrrs-alpha_2_o) remainder of: angular acceleration of link 2 */
     const real rrrs_alpha_2_o_in_axes2_x = v->rrrs_W_2_in_axes2_yz +
         rrrs_alpha_1_o_in_axes2_x;
@@ -3636,7 +3655,7 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
     /* (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the
        connection point left out */
     const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
-        rrrs_N_2_o_in_axes2_x*v->rrrs_h_2_t_19 - rrrs_N_2_o_in_axes2_y*v->rrrs_h_2_t_20;
+        rrrs_N_2_o_in_axes2_x*v->rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v->rrrs_s_2;
     /* (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and
        weight along all degrees of freedom */
     const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
@@ -3673,8 +3692,8 @@ INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t 
 INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v)
 {
     /* (rrrs-alpha_1) angular acceleration of link 1 */
-    const real rrrs_alpha_1_in_axes2_x = v->rrrs_h_2_t_19*v->rrrs_qdd_1;
-    const real rrrs_alpha_1_t = v->rrrs_h_2_t_20*v->rrrs_qdd_1;
+    const real rrrs_alpha_1_in_axes2_x = v->rrrs_c_2*v->rrrs_qdd_1;
+    const real rrrs_alpha_1_t = v->rrrs_qdd_1*v->rrrs_s_2;
     /* (rrrs-alpha_2) angular acceleration of link 2 */
     const real rrrs_alpha_2_in_axes2_x = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x;
     const real rrrs_alpha_2_in_axes2_y = v->rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t;
@@ -3746,8 +3765,8 @@ INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v
         v->rrrs_mu_1_t;
     /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
        left out */
-    const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z +
-        rrrs_N_2_in_axes2_x*v->rrrs_h_2_t_19 - rrrs_N_2_in_axes2_y*v->rrrs_h_2_t_20;
+    const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
+        rrrs_N_2_in_axes2_y*v->rrrs_s_2;
     /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
     const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*m->rrrs_w_3_in_axes3_y[i];
@@ -3780,12 +3799,10 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
     const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_s_3_t;
     const real rrrs_Jc_2_in_axes2_xy = m->rrrs_J_2_in_spec2_xy[i] + rrrs_Jc_2_t_4*v->rrrs_c_3
         - rrrs_Jc_2_t_2*v->rrrs_s_3_t;
-    const real rrrs_Jc_2_in_axes1_zz =
-        v->rrrs_h_2_t_19*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xx[i] +
+    const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xx[i] +
         rrrs_Jc_2_t_4*v->rrrs_s_3_t + rrrs_Jc_2_t_2*v->rrrs_c_3) -
-        rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_20) -
-        v->rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*v->rrrs_h_2_t_19 -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+        rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yy[i] - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 -
         m->rrrs_J_3_in_spec3_xx[i]*v->rrrs_s_3_t) +
         v->rrrs_c_3*(m->rrrs_J_3_in_spec3_yy[i]*v->rrrs_c_3 - rrrs_Jc_2_t)));
     /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
@@ -3801,11 +3818,10 @@ INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
        inertia and weight */
     const real rrrs_d_Gamma_1_t = rrrs_D_1_3*m->rrrs_w_3_in_axes3_y[i];
     const real rrrs_d_Gamma_1_in_axes3_x = v->rrrs_e_1_in_axes3_y*m->rrrs_h_3_in_spec3_z[i] +
-        v->rrrs_w_2_in_axes3_x*(v->rrrs_h_2_t_19*(m->rrrs_J_2_in_spec2_xz[i] +
+        v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(m->rrrs_J_2_in_spec2_xz[i] +
         m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_c_3 + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_s_3_t) -
-        v->rrrs_h_2_t_20*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3
-        - m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) -
-        rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
+        v->rrrs_s_2*(m->rrrs_J_2_in_spec2_yz[i] + m->rrrs_J_3_in_spec3_yz[i]*v->rrrs_c_3 -
+        m->rrrs_J_3_in_spec3_xz[i]*v->rrrs_s_3_t) - rrrs_d_Gamma_1_t*v->rrrs_r_2_in_axes3_x);
     const real rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t -
         v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_z[i];
     const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*m->rrrs_h_3_in_spec3_y[i] -
@@ -4017,8 +4033,8 @@ INLINE void any_entries_rrrrs_3(size_t k, size_t count, const values_rrrrs *v, r
 INLINE void any_singular_rrrrs(const prepared *m, size_t i, size_t k, const values_rrrrs *v, real
     *o)
 {
-    o[k] = UNLESS(magnitude(v->rrrrs_h_3_t_11) > TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) +
-        UNLESS(magnitude(v->rrrrs_h_3_t_22) > TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) +
+    o[k] = UNLESS(magnitude(v->rrrrs_rho2_1) > TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrrs_rho2_3) > TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]) +
         UNLESS(magnitude(v->rrrrs_v_1_in_axes4_z) > TOLERANCE*m->rrrrs_size[i]) +
         UNLESS(magnitude(v->rrrrs_r_3_in_axes4_y) > TOLERANCE*m->rrrrs_size[i]);
 }
@@ -4058,8 +4074,8 @@ INLINE void any_entries_rrrs(size_t k, size_t count, const values_rrrs *v, real 
 INLINE void any_singular_rrrs(const prepared *m, size_t i, size_t k, const values_rrrs *v, real
     *o)
 {
-    o[k] = UNLESS(magnitude(v->rrrs_h_2_t_9) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
-        UNLESS(magnitude(v->rrrs_h_2_t_16) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
+    o[k] = UNLESS(magnitude(v->rrrs_rho2_1) > TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) +
+        UNLESS(magnitude(v->rrrs_rho2_2) > TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]) +
         UNLESS(magnitude(v->rrrs_v_1_in_axes3_z) > TOLERANCE*m->rrrs_size[i]) +
         UNLESS(magnitude(v->rrrs_r_2_in_axes3_y) > TOLERANCE*m->rrrs_size[i]);
 }
@@ -4142,7 +4158,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     any_entries_rrrrs(k, count, &v, o);
     any_entries_rrrrs_2(k, count, &v, o + 1*count);
     any_entries_rrrrs_3(k, count, &v, o + 14*count);
-    o[28*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[28*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 29*count);
     o[30*count + k] = (((v.rrrrs_P_2_o + v.rrrrs_d_P_2_x) + (v.rrrrs_d_P_2_y +
         (v.rrrrs_d_P_2_z + v.rrrrs_M_ya_2_x))) + ((v.rrrrs_M_ya_2_y + v.rrrrs_M_ya_2_z) +
@@ -4221,7 +4237,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
     any_sums_rrrs(k, count, add, &v, terms + 20*count);
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
@@ -4444,7 +4460,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_rrrrs_M_dynamics(m, i, &v);
     any_sums_rrrrs(k, count, add, &v, terms);
     any_entries_rrrrs_2(k, count, &v, o);
-    o[13*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[13*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 14*count);
     o[15*count + k] = (v.rrrrs_d_P_2_x + (v.rrrrs_d_P_2_y + v.rrrrs_d_P_2_z)) +
         ((v.rrrrs_M_ya_2_x + v.rrrrs_M_ya_2_y) + (v.rrrrs_M_ya_2_z + v.rrrrs_dy_2_P_2));
@@ -4500,7 +4516,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     gather(&terms[17*count + k], add, v.rrrs_M_aa_t_4);  /* M_aa_yy_of_legs */
     gather(&terms[18*count + k], add, v.rrrs_M_aa_t_5);  /* M_aa_yz_of_legs */
     gather(&terms[19*count + k], add, v.rrrs_M_aa_t_6);  /* M_aa_zz_of_legs */
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
@@ -4699,7 +4715,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     stage_rrrrs_Z_dynamics(m, i, &v);
     any_sums_rrrrs_2(k, count, add, &v, terms);
     any_entries_rrrrs(k, count, &v, o);
-    o[1*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[1*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 2*count);
     o[3*count + k] = v.rrrrs_P_2_o;
 }
@@ -4721,7 +4737,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     stage_rrrs_V_X(m, w, i, j, V, &v);
     stage_rrrs_Z_dynamics(m, w, i, j, V, &v);
     any_sums_rrrs(k, count, add, &v, terms);
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 1*count);
 }
 
@@ -4840,7 +4856,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, size_t
     values_rrrrs v;
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     any_entries_rrrrs_3(k, count, &v, o);
-    o[14*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[14*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + (v.rrrrs_H_a_1_x +
         (v.rrrrs_H_a_1_y + v.rrrrs_H_a_1_z))) + ((v.rrrrs_w_3_t_8 + (v.rrrrs_w_3_t_9 +
@@ -4876,7 +4892,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size_t 
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
     o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
         (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
@@ -5035,8 +5051,8 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
        point left out */
     const real rrrrs_N_2_in_axes2_z = rrrrs_mu_2_in_axes2_z +
-        m->rrrrs_joint3_offset_x[i]*(rrrrs_f_3_in_axes3_x*v.rrrrs_h_3_t_26 +
-        rrrrs_f_3_in_axes3_y*v.rrrrs_h_3_t_25) + v.rrrrs_N_3_in_axes3_z;
+        m->rrrrs_joint3_offset_x[i]*(v.rrrrs_c_3*rrrrs_f_3_in_axes3_y +
+        rrrrs_f_3_in_axes3_x*v.rrrrs_s_3) + v.rrrrs_N_3_in_axes3_z;
     /* (rrrrs-c) leg force on the platform without actuation and without the mass at the connection
        point */
     const real rrrrs_c_x = v.axis_y_rrrrs_axes4_x*v.rrrrs_c_in_axes4_y +
@@ -5067,7 +5083,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j,
     /* (rrrrs-P_2) */
     o[0*count + k] = rrrrs_P_2;
     any_entries_rrrrs_3(k, count, &v, o + 1*count);
-    o[15*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[15*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 16*count);
 }
 
@@ -5123,7 +5139,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, 
     gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
     gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
     any_entries_rrrs(k, count, &v, o);
-    o[12*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 13*count);
 }
 
@@ -5273,7 +5289,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     /* (rrrrs-q_1) displacement of joint 1 */
     const real rrrrs_q_1 = angle(v.rrrrs_s_1, v.rrrrs_c_1);
     /* (rrrrs-q_3) displacement of joint 3 */
-    const real rrrrs_q_3 = angle(v.rrrrs_h_3_t_26, v.rrrrs_h_3_t_25);
+    const real rrrrs_q_3 = angle(v.rrrrs_s_3, v.rrrrs_c_3);
     /* (rrrrs-q_4) displacement of joint 4 */
     const real rrrrs_q_4 = angle(-v.rrrrs_s_4_t, v.rrrrs_c_4);
     /* (rrrrs-q_1) */
@@ -5285,9 +5301,9 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t i,
     o[2*count + k] = rrrrs_q_3;
     /* (rrrrs-q_4) */
     o[3*count + k] = rrrrs_q_4;
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
-    o[5*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
+    o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
+    o[5*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
     o[6*count + k] = (rrrrs_q_1 + rrrrs_y_2_extra) + (rrrrs_q_3 + rrrrs_q_4);
 }
@@ -5312,7 +5328,7 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     /* (rrrs-q_1) displacement of joint 1 */
     const real rrrs_q_1 = angle(v.rrrs_s_1, v.rrrs_c_1);
     /* (rrrs-q_2) displacement of joint 2 */
-    const real rrrs_q_2 = angle(v.rrrs_h_2_t_20, v.rrrs_h_2_t_19);
+    const real rrrs_q_2 = angle(v.rrrs_s_2, v.rrrs_c_2);
     /* (rrrs-q_3) displacement of joint 3 */
     const real rrrs_q_3 = angle(-v.rrrs_s_3_t, v.rrrs_c_3);
     /* (rrrs-q_1) */
@@ -5321,9 +5337,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t i, 
     o[1*count + k] = rrrs_q_2;
     /* (rrrs-q_3) */
     o[2*count + k] = rrrs_q_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-    o[4*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+    o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
     o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
 }
@@ -5414,7 +5430,7 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t
     o[2*count + k] = -v.rrrrs_qd_3_t;
     /* (rrrrs-qd_4) rate of joint 4 */
     o[3*count + k] = v.rrrrs_qd_4;
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
     o[6*count + k] = (v.rrrrs_qd_1 + rrrrs_yd_2) + (v.rrrrs_qd_3_t + v.rrrrs_qd_4);
 }
@@ -5443,7 +5459,7 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t i, size_t 
     o[1*count + k] = v.rrrs_qd_2;
     /* (rrrs-qd_3) rate of joint 3 */
     o[2*count + k] = v.rrrs_qd_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rrrs_qd_1 + (v.rrrs_qd_2 + v.rrrs_qd_3);
 }
@@ -5537,7 +5553,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t i
     o[2*count + k] = -v.rrrrs_qdd_3_t;
     /* (rrrrs-qdd_4) acceleration of joint 4 */
     o[3*count + k] = v.rrrrs_qdd_4;
-    o[4*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[4*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 5*count);
     o[6*count + k] = (v.rrrrs_qdd_1 + rrrrs_ydd_2) + (v.rrrrs_qdd_3_t + v.rrrrs_qdd_4);
 }
@@ -5567,7 +5583,7 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t i,
     o[1*count + k] = v.rrrs_qdd_2;
     /* (rrrs-qdd_3) acceleration of joint 3 */
     o[2*count + k] = v.rrrs_qdd_3;
-    o[3*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 4*count);
     o[5*count + k] = v.rrrs_qdd_1 + (v.rrrs_qdd_2 + v.rrrs_qdd_3);
 }
@@ -5681,7 +5697,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j, siz
     o[6*count + k] = -v.rrrrs_w_3_t_8;
     o[7*count + k] = -v.rrrrs_w_3_t_9;
     o[8*count + k] = -v.rrrrs_w_3_t_10;
-    o[9*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[9*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 10*count);
 }
 
@@ -5737,7 +5753,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j, size
     o[6*count + k] = v.rrrs_w_2_x;
     o[7*count + k] = v.rrrs_w_2_y;
     o[8*count + k] = v.rrrs_w_2_z;
-    o[9*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[9*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 10*count);
 }
 
@@ -5816,25 +5832,24 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         m->rrrrs_h_4_in_spec4_y[i]*v.rrrrs_s_4_t;
     const real rrrrs_potential_t_6 = v.rrrrs_c_4*m->rrrrs_h_4_in_spec4_y[i] -
         m->rrrrs_h_4_in_spec4_x[i]*v.rrrrs_s_4_t;
-    const real rrrrs_potential_t_7 = v.rrrrs_h_3_t_25*rrrrs_potential_t_5 -
-        v.rrrrs_h_3_t_26*rrrrs_potential_t_6;
-    const real rrrrs_potential_t_8 = v.rrrrs_h_3_t_25*rrrrs_potential_t_6 +
-        v.rrrrs_h_3_t_26*rrrrs_potential_t_5;
+    const real rrrrs_potential_t_7 = v.rrrrs_c_3*rrrrs_potential_t_5 -
+        rrrrs_potential_t_6*v.rrrrs_s_3;
+    const real rrrrs_potential_t_8 = v.rrrrs_c_3*rrrrs_potential_t_6 +
+        rrrrs_potential_t_5*v.rrrrs_s_3;
     const real rrrrs_potential_t_9 = m->rrrrs_h_1_in_spec1_x[i] + m->rrrrs_potential_t_3[i] +
-        m->rrrrs_potential_t_4[i] + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_6 -
-        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_7 +
+        m->rrrrs_potential_t_4[i] + v.rrrrs_c_2*m->rrrrs_h_2_in_spec2_x[i] -
+        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_s_2 +
         m->rrrrs_link3_mass[i]*(m->rrrrs_b_in_spec1_x[i] + m->rrrrs_joint2_offset_x[i] +
-        v.rrrrs_h_3_t_6*m->rrrrs_joint3_offset_x[i]) +
-        v.rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_7 + v.rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_6 +
-        v.rrrrs_h_3_t_6*rrrrs_potential_t_7 - v.rrrrs_h_3_t_7*rrrrs_potential_t_8;
+        v.rrrrs_c_2*m->rrrrs_joint3_offset_x[i]) + v.rrrrs_P_c_3_in_axes2_x*v.rrrrs_s_2 +
+        v.rrrrs_c_2*v.rrrrs_h_3_in_axes2_x + v.rrrrs_c_2*rrrrs_potential_t_7 -
+        rrrrs_potential_t_8*v.rrrrs_s_2;
     const real rrrrs_potential_t_10 = m->rrrrs_h_1_in_spec1_y[i] +
-        m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_h_3_t_7 +
-        m->rrrrs_h_2_in_spec2_y[i]*v.rrrrs_h_3_t_6 + rrrrs_b_in_spec1_y*m->rrrrs_link1_mass[i]
-        + rrrrs_b_in_spec1_y*m->rrrrs_link2_mass[i] +
-        m->rrrrs_link3_mass[i]*(v.rrrrs_h_3_t_7*m->rrrrs_joint3_offset_x[i] +
-        rrrrs_b_in_spec1_y) + v.rrrrs_h_3_in_axes2_x*v.rrrrs_h_3_t_7 -
-        v.rrrrs_P_c_3_in_axes2_x*v.rrrrs_h_3_t_6 + v.rrrrs_h_3_t_6*rrrrs_potential_t_8 +
-        v.rrrrs_h_3_t_7*rrrrs_potential_t_7;
+        v.rrrrs_c_2*m->rrrrs_h_2_in_spec2_y[i] + m->rrrrs_h_2_in_spec2_x[i]*v.rrrrs_s_2 +
+        rrrrs_b_in_spec1_y*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_y*m->rrrrs_link2_mass[i]
+        + m->rrrrs_link3_mass[i]*(m->rrrrs_joint3_offset_x[i]*v.rrrrs_s_2 +
+        rrrrs_b_in_spec1_y) + v.rrrrs_h_3_in_axes2_x*v.rrrrs_s_2 -
+        v.rrrrs_P_c_3_in_axes2_x*v.rrrrs_c_2 + v.rrrrs_c_2*rrrrs_potential_t_8 +
+        rrrrs_potential_t_7*v.rrrrs_s_2;
     const real rrrrs_potential_t_11 = v.rrrrs_g_in_axes1_y*(m->rrrrs_h_1_in_spec1_z[i] +
         m->rrrrs_h_2_in_spec2_z[i] + m->rrrrs_h_3_in_spec3_z[i] + m->rrrrs_h_4_in_spec4_z[i] +
         rrrrs_b_in_spec1_z*m->rrrrs_link1_mass[i] + rrrrs_b_in_spec1_z*m->rrrrs_link2_mass[i]
@@ -5843,9 +5858,9 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
         m->rrrrs_g_in_axes1_z[i]*rrrrs_potential_t_9;
     /* (potential) */
     gather(&terms[0*count + k], add, rrrrs_potential_t_11);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.rrrrs_h_3_t_11) >
-        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_h_3_t_22) >
+    o[0*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrrs_rho2_3) >
         TOLERANCE*TOLERANCE*m->rrrrs_rho2_3_t[i]);
 }
 
@@ -5855,8 +5870,8 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     values_rrrs v;
     stage_rrrs_X(m, w, i, j, s, X, &v);
     /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-    const real rrrs_h_2_in_axes1_z = m->rrrs_h_2_in_spec2_x[i]*v.rrrs_h_2_t_19 -
-        m->rrrs_h_2_in_spec2_y[i]*v.rrrs_h_2_t_20;
+    const real rrrs_h_2_in_axes1_z = v.rrrs_c_2*m->rrrs_h_2_in_spec2_x[i] -
+        m->rrrs_h_2_in_spec2_y[i]*v.rrrs_s_2;
     /* (potential) */
     const real rrrs_b_in_spec1_y = v.rrrs_c_1*m->rrrs_potential_t[i] +
         m->rrrs_potential_t_2[i]*v.rrrs_s_1;
@@ -5871,16 +5886,16 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
         rrrs_b_in_spec1_z*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_z*m->rrrs_link2_mass[i]) +
         v.rrrs_g_in_axes1_x*(m->rrrs_h_1_in_spec1_y[i] +
         rrrs_b_in_spec1_y*m->rrrs_link1_mass[i] + rrrs_b_in_spec1_y*m->rrrs_link2_mass[i] +
-        m->rrrs_h_2_in_spec2_x[i]*v.rrrs_h_2_t_20 + m->rrrs_h_2_in_spec2_y[i]*v.rrrs_h_2_t_19
-        + v.rrrs_h_2_t_19*rrrs_potential_t_6 + v.rrrs_h_2_t_20*rrrs_potential_t_5) +
+        v.rrrs_c_2*m->rrrs_h_2_in_spec2_y[i] + m->rrrs_h_2_in_spec2_x[i]*v.rrrs_s_2 +
+        v.rrrs_c_2*rrrs_potential_t_6 + rrrs_potential_t_5*v.rrrs_s_2) +
         m->rrrs_g_in_axes1_z[i]*(m->rrrs_h_1_in_spec1_x[i] + m->rrrs_potential_t_3[i] +
-        m->rrrs_potential_t_4[i] + rrrs_h_2_in_axes1_z + v.rrrs_h_2_t_19*rrrs_potential_t_5 -
-        v.rrrs_h_2_t_20*rrrs_potential_t_6);
+        m->rrrs_potential_t_4[i] + rrrs_h_2_in_axes1_z + v.rrrs_c_2*rrrs_potential_t_5 -
+        rrrs_potential_t_6*v.rrrs_s_2);
     /* (potential) */
     gather(&terms[0*count + k], add, rrrs_potential_t_7);  /* potential_of_legs */
-    o[0*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
-    o[1*count + k] = UNLESS(magnitude(v.rrrs_h_2_t_9) >
-        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_h_2_t_16) >
+    o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
+    o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) >
+        TOLERANCE*TOLERANCE*m->rrrs_size_t_3[i]) + UNLESS(magnitude(v.rrrs_rho2_2) >
         TOLERANCE*TOLERANCE*m->rrrs_rho2_2_t[i]);
 }
 
@@ -5965,8 +5980,8 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     stage_rrrrs_X(m, w, i, j, s, X, &v);
     /* (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrrrs_pivot_size = magnitude(v.rrrrs_h_3_t_11);
-    const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_h_3_t_22);
+    const real rrrrs_pivot_size = magnitude(v.rrrrs_rho2_1);
+    const real rrrrs_pivot_size_2 = magnitude(v.rrrrs_rho2_3);
     const real rrrrs_pivot_size_3 = magnitude(v.rrrrs_v_1_in_axes4_z);
     const real rrrrs_pivot_size_4 = magnitude(v.rrrrs_r_3_in_axes4_y);
     const real rrrrs_least_pivots =
@@ -5984,13 +5999,13 @@ INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t i, size_t j
     any_entries_rrrrs_3(k, count, &v, o);
     /* (rrrrs-G) */
     o[14*count + k] = rrrrs_least_pivots;
-    o[15*count + k] = v.rrrrs_h_3_t_23;
-    o[16*count + k] = UNLESS(v.rrrrs_h_3_t_23 >= 0);
+    o[15*count + k] = v.rrrrs_disc_3;
+    o[16*count + k] = UNLESS(v.rrrrs_disc_3 >= 0);
     any_singular_rrrrs(m, i, k, &v, o + 17*count);
     o[18*count + k] = ((v.rrrrs_w_1_x + (v.rrrrs_w_1_y + v.rrrrs_w_1_z)) + ((v.rrrrs_H_a_1_x +
         v.rrrrs_H_a_1_y) + (v.rrrrs_H_a_1_z + v.rrrrs_w_3_t_8))) + (((v.rrrrs_w_3_t_9 +
         v.rrrrs_w_3_t_10) + (v.rrrrs_H_a_3_x + v.rrrrs_H_a_3_y)) + ((v.rrrrs_H_a_3_z +
-        v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_h_3_t_23)));
+        v.rrrrs_w_3_t_7) + (rrrrs_least_pivots + v.rrrrs_disc_3)));
 }
 
 INLINE void condition_place_rrrrs(size_t w, size_t k, size_t at, size_t count, const real *o, real
@@ -6024,8 +6039,8 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     stage_rrrs_X(m, w, i, j, s, X, &v);
     /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
        degrees of freedom */
-    const real rrrs_pivot_size = magnitude(v.rrrs_h_2_t_9);
-    const real rrrs_pivot_size_2 = magnitude(v.rrrs_h_2_t_16);
+    const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
+    const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
     const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
     const real rrrs_pivot_size_4 = magnitude(v.rrrs_r_2_in_axes3_y);
     const real rrrs_least_pivots =
@@ -6043,13 +6058,13 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t i, size_t j,
     any_entries_rrrs(k, count, &v, o);
     /* (rrrs-G) */
     o[12*count + k] = rrrs_least_pivots;
-    o[13*count + k] = v.rrrs_h_2_t_17;
-    o[14*count + k] = UNLESS(v.rrrs_h_2_t_17 >= 0);
+    o[13*count + k] = v.rrrs_disc_2;
+    o[14*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     any_singular_rrrs(m, i, k, &v, o + 15*count);
     o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
         v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
         v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
-        v.rrrs_h_2_t_17)));
+        v.rrrs_disc_2)));
 }
 
 INLINE void condition_place_rrrs(size_t w, size_t i, size_t k, size_t at, size_t count, const real

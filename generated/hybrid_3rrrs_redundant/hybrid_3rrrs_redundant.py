@@ -846,8 +846,6 @@ def _prepare(p):
     rrrrs_link2_inertia_zz - rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4)
     )
     # (rrrrs-h_3) first moment of link 3 about the origin of link 3
-    rrrrs_h_3_t = 0.5*rrrrs_size_t
-    rrrrs_h_3_t_2 = 0.5*rrrrs_size_t_2
     rrrrs_h_3_in_spec3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
     rrrrs_h_3_in_spec3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
     rrrrs_h_3_in_spec3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
@@ -909,6 +907,9 @@ def _prepare(p):
     rrrrs_J_4_in_spec4_zz = (
     rrrrs_link4_inertia_zz - rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4)
     )
+    # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+    rrrrs_Kd_3_t = 0.5*rrrrs_size_t
+    rrrrs_Kd_3_t_2 = 0.5*rrrrs_size_t_2
     # (rrrrs-rho2_3) squared amplitude
     rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3
     # (rrrrs-x_4) from the origin of joint 4 to the connection point
@@ -1025,8 +1026,6 @@ def _prepare(p):
     )
     rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
     # (rrrs-h_2) first moment of link 2 about the origin of link 2
-    rrrs_h_2_t = 0.5*rrrs_size_t
-    rrrs_h_2_t_2 = 0.5*rrrs_size_t_2
     rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
@@ -1074,6 +1073,9 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
     # (rrrs-rho2_2) squared amplitude
     rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
     # (rrrs-x_3) from the origin of joint 3 to the connection point
@@ -1223,8 +1225,8 @@ def _prepare(p):
                     rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
                     rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
                     rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
-                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
-                    rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
                     rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
                     rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
                     rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
@@ -1237,28 +1239,28 @@ def _prepare(p):
                     rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t,
                     rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z,
                     rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z,
-                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y,
-                    rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
-                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
-                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1279,32 +1281,31 @@ def _prepare(p):
                     rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
                     rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
                     rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
-                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
-                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_Kd_3_t,
+                    rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
                     rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
                     rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
                     rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
                     rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y,
                     rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t,
-                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_t, rrrrs_h_3_t_2,
-                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
-                    rrrrs_w_4_in_axes4_y,),
+                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_4_in_spec4_x,
+                    rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
+                    rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
+                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
                     rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
                     rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
                     rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y,
-                    rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_2_t,
-                    rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
                     rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
                     rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1321,37 +1322,37 @@ def _prepare(p):
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
                     rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
                     rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
-                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
-                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
-                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
-                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
-                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
-                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
-                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+                    rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+                    rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+                    rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+                    rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
+                    rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+                    rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+                    rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+                    rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y,
+                    rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1364,22 +1365,21 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3,),
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3,),
@@ -1396,37 +1396,37 @@ def _prepare(p):
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
                     rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
                     rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
-                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
-                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
-                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
-                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
-                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
-                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
-                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+                    rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+                    rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+                    rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+                    rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
+                    rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+                    rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+                    rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+                    rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y,
+                    rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
@@ -1439,22 +1439,21 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t,
-                    rrrrs_size_t_3,),
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
@@ -1464,22 +1463,22 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+                    rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1490,22 +1489,22 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+                    rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
                     rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
                     rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
                     rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
@@ -1519,37 +1518,38 @@ def _prepare(p):
         (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
                     rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
                     rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
-                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
-                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
-                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
-                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
-                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
-                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
-                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_link3_mass, rrrrs_link4_mass, rrrrs_platform_joint_offset_x,
-                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+                    rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+                    rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+                    rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+                    rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
+                    rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+                    rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+                    rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+                    rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y,
+                    rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+                    rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
         (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
                     rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-                    rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-                    rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
                     rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
@@ -1563,15 +1563,15 @@ def _prepare(p):
                 h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
-                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-                    rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_x,
-                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
-                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
-                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_acc_3_t,
+                    rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
+                    rrrrs_h_1_in_spec1_x, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z,
+                    rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z,
+                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z,
                     rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
                     rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
                     rrrrs_link1_mass, rrrrs_link2_mass, rrrrs_link3_mass,
@@ -1580,13 +1580,13 @@ def _prepare(p):
                     rrrrs_potential_t_3, rrrrs_potential_t_4, rrrrs_rho2_3_t, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x,
-                    rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-                    rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
                     rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
                     rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
@@ -1601,23 +1601,22 @@ def _prepare(p):
             (
                 (_rrrrs,
         (inv_rrrrs_rho2_3_t, inv_rrrrs_size, inv_rrrrs_size_t, inv_rrrrs_size_t_2,
-                    inv_rrrrs_size_t_3, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3,),
+                    inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
                 ),
                 (_rrrs,
         (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
                     rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
                     rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
@@ -2703,19 +2702,19 @@ def _run_dynamics(m, X, V):
             rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
             rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
             rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
-            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
-            rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
-            rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
-            rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz,
-            rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
-            rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t,
-            rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
-            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
-            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
-            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_Kd_3_t,
+            rrrrs_Kd_3_t_2, rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+            rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
+            rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
+            rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t,
+            rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t, rrrrs_g_in_axes1_z,
+            rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x,
             rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
@@ -2724,7 +2723,7 @@ def _run_dynamics(m, X, V):
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -2734,61 +2733,76 @@ def _run_dynamics(m, X, V):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
-        rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_h_3_in_axes2_x = rrrrs_c_3*rrrrs_h_3_in_spec3_x - rrrrs_h_3_in_spec3_y*rrrrs_s_3
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -2802,21 +2816,21 @@ def _run_dynamics(m, X, V):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -2830,10 +2844,10 @@ def _run_dynamics(m, X, V):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -2894,13 +2908,11 @@ def _run_dynamics(m, X, V):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
-        rrrrs_omega_1_t = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
-        )
+        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -2946,12 +2958,11 @@ def _run_dynamics(m, X, V):
         rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 - rrrrs_zeta_3_t - rrrrs_W_2_in_axes2_xz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -2962,12 +2973,12 @@ def _run_dynamics(m, X, V):
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
         rrrrs_bias_in_axes4_x = (
@@ -3001,8 +3012,8 @@ def _run_dynamics(m, X, V):
         # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
         rrrrs_qdd_3_o_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x
         # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
-        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*rrrrs_s_2
         # (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
         rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -3011,12 +3022,12 @@ def _run_dynamics(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+        rrrrs_alpha_2_o_in_axes2_x*rrrrs_c_3 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_s_3 -
             rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_o_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
-            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_s_3
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
         rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t
@@ -3051,20 +3062,20 @@ def _run_dynamics(m, X, V):
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_c_3
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_s_3
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
-        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes3_x = rrrrs_c_3*rrrrs_g_in_axes2_x + rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_g_in_axes3_y = rrrrs_c_3*rrrrs_g_in_axes2_y - rrrrs_g_in_axes2_x*rrrrs_s_3
         # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_s_3 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_c_3 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
@@ -3136,41 +3147,37 @@ def _run_dynamics(m, X, V):
             rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
         )
         rrrrs_Jc_3_in_axes2_xz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_25 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_c_3 - rrrrs_Jc_3_in_axes3_yz*rrrrs_s_3
         )
         rrrrs_Jc_3_in_axes2_yz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_25
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_s_3 + rrrrs_Jc_3_in_axes3_yz*rrrrs_c_3
         )
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
-        )
+        rrrrs_P_c_3_in_axes2_x = -rrrrs_c_3*rrrrs_h_3_in_spec3_y - rrrrs_h_3_in_spec3_x*rrrrs_s_3
         # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         rrrrs_L_c_3_2_in_axes2_z = (
         rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_L_c_3_2_in_axes1_z = (
-        rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
+        rrrrs_Jc_3_in_axes2_xz*rrrrs_c_2 - rrrrs_Jc_3_in_axes2_yz*rrrrs_s_2
         )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
-        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2
-        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_25
-        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_s_3
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_c_3 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_c_3
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_s_3
         rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
         rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
         rrrrs_Jc_2_in_axes2_xy = (
-        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_25 +
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_s_3 + rrrrs_Jc_2_t_5*rrrrs_c_3 +
             rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_Jc_2_in_axes1_zz = (
-        rrrrs_h_3_t_6*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_2_t_3*rrrrs_h_3_t_25 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_26) -
-            rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7) -
-            rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 -
-            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_25*(rrrrs_Jc_2_t_2
-            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_25) + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_4 +
-            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26)))
+        rrrrs_c_2*(rrrrs_c_2*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 + rrrrs_Jc_2_t_3*rrrrs_c_3 -
+            2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_s_3) - rrrrs_Jc_2_in_axes2_xy*rrrrs_s_2) -
+            rrrrs_s_2*(rrrrs_Jc_2_in_axes2_xy*rrrrs_c_2 - rrrrs_s_2*(rrrrs_J_2_in_spec2_yy +
+            rrrrs_Jc_2_t_7 + rrrrs_c_3*(rrrrs_Jc_2_t_2 + rrrrs_Jc_3_in_axes3_yy*rrrrs_c_3) +
+            rrrrs_s_3*(rrrrs_Jc_2_t_4 + rrrrs_Jc_3_in_axes3_xx*rrrrs_s_3)))
         )
         # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
         rrrrs_mu_4_t = rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t)
@@ -3299,17 +3306,17 @@ def _run_dynamics(m, X, V):
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
-        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_25 -
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_c_3 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_s_3
         )
         rrrrs_N_2_o_in_axes2_y = (
-        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_s_3 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_c_3 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_o_in_axes2_z = (
         rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_25)
+            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
+            rrrrs_f_3_o_in_axes3_x*rrrrs_s_3)
         )
         # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         rrrrs_d_Gamma_2_in_axes4_x = (
@@ -3329,8 +3336,8 @@ def _run_dynamics(m, X, V):
         rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_mu_1_t
         # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
-        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_6 -
-            rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_7
+        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_c_2 -
+            rrrrs_N_2_o_in_axes2_y*rrrrs_s_2
         )
         # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrrs_d_Gamma_1_t = rrrrs_D_1_4*rrrrs_w_4_in_axes4_y
@@ -3463,8 +3470,8 @@ def _run_dynamics(m, X, V):
         rrrrs_d_P_2_in_axes4_z = (
         rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
             inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z) +
-            rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
-            rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
+            rrrrs_w_1_in_axes4_z*(rrrrs_c_2*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
+            rrrrs_d_P_2_t) - rrrrs_s_2*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
             rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
         )
         rrrrs_d_P_2_x = (
@@ -3524,10 +3531,10 @@ def _run_dynamics(m, X, V):
         rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
         rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (M_tt) translational block of M
         M_tt_rrrrs_xx += rrrrs_Q_xx
@@ -3610,21 +3617,21 @@ def _run_dynamics(m, X, V):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -3634,56 +3641,60 @@ def _run_dynamics(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -3725,8 +3736,8 @@ def _run_dynamics(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3756,8 +3767,8 @@ def _run_dynamics(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -3798,8 +3809,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -3835,8 +3846,8 @@ def _run_dynamics(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -3894,11 +3905,11 @@ def _run_dynamics(m, X, V):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
-            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
-            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
@@ -3943,8 +3954,8 @@ def _run_dynamics(m, X, V):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -3998,17 +4009,16 @@ def _run_dynamics(m, X, V):
         rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
         rrrs_d_Gamma_1_in_axes3_x = (
         rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
-            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+            rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t) - rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
@@ -4135,8 +4145,8 @@ def _run_dynamics(m, X, V):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -4350,20 +4360,20 @@ def _run_M(m, X):
             rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
             rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
             rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
-            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-            rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t,
-            rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t, rrrrs_h_3_in_spec3_x,
-            rrrrs_h_3_in_spec3_y, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_Kd_3_t,
+            rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_d_G_in_axes4_yy,
+            rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy,
+            rrrrs_d_phi_4_t, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_4_in_spec4_x,
             rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
             rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
             rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -4373,82 +4383,97 @@ def _run_M(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
-        rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_h_3_in_axes2_x = rrrrs_c_3*rrrrs_h_3_in_spec3_x - rrrrs_h_3_in_spec3_y*rrrrs_s_3
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
         rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -4459,10 +4484,10 @@ def _run_M(m, X):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -4518,41 +4543,37 @@ def _run_M(m, X):
             rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
         )
         rrrrs_Jc_3_in_axes2_xz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_25 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_c_3 - rrrrs_Jc_3_in_axes3_yz*rrrrs_s_3
         )
         rrrrs_Jc_3_in_axes2_yz = (
-        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_25
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_s_3 + rrrrs_Jc_3_in_axes3_yz*rrrrs_c_3
         )
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
-        )
+        rrrrs_P_c_3_in_axes2_x = -rrrrs_c_3*rrrrs_h_3_in_spec3_y - rrrrs_h_3_in_spec3_x*rrrrs_s_3
         # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         rrrrs_L_c_3_2_in_axes2_z = (
         rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_L_c_3_2_in_axes1_z = (
-        rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_6 - rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_7
+        rrrrs_Jc_3_in_axes2_xz*rrrrs_c_2 - rrrrs_Jc_3_in_axes2_yz*rrrrs_s_2
         )
         # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
-        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_25 - rrrrs_Jc_2_t_2
-        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_25
-        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_s_3
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_c_3 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_c_3
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_s_3
         rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
         rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
         rrrrs_Jc_2_in_axes2_xy = (
-        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_25 +
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_s_3 + rrrrs_Jc_2_t_5*rrrrs_c_3 +
             rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
         )
         rrrrs_Jc_2_in_axes1_zz = (
-        rrrrs_h_3_t_6*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 +
-            rrrrs_Jc_2_t_3*rrrrs_h_3_t_25 - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_26) -
-            rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7) -
-            rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 -
-            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yy + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_25*(rrrrs_Jc_2_t_2
-            + rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_25) + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_4 +
-            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26)))
+        rrrrs_c_2*(rrrrs_c_2*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 + rrrrs_Jc_2_t_3*rrrrs_c_3 -
+            2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_s_3) - rrrrs_Jc_2_in_axes2_xy*rrrrs_s_2) -
+            rrrrs_s_2*(rrrrs_Jc_2_in_axes2_xy*rrrrs_c_2 - rrrrs_s_2*(rrrrs_J_2_in_spec2_yy +
+            rrrrs_Jc_2_t_7 + rrrrs_c_3*(rrrrs_Jc_2_t_2 + rrrrs_Jc_3_in_axes3_yy*rrrrs_c_3) +
+            rrrrs_s_3*(rrrrs_Jc_2_t_4 + rrrrs_Jc_3_in_axes3_xx*rrrrs_s_3)))
         )
         # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
@@ -4682,8 +4703,8 @@ def _run_M(m, X):
         rrrrs_d_P_2_in_axes4_z = (
         rrrrs_r_2_in_axes4_y*(rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x -
             inv_rrrrs_r_3_in_axes4_y*rrrrs_L_c_3_2_in_axes1_z*rrrrs_w_1_in_axes4_z) +
-            rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
-            rrrrs_d_P_2_t) - rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
+            rrrrs_w_1_in_axes4_z*(rrrrs_c_2*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz -
+            rrrrs_d_P_2_t) - rrrrs_s_2*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz)) -
             rrrrs_d_Gamma_4_in_axes4_z*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
         )
         rrrrs_d_P_2_x = (
@@ -4726,10 +4747,10 @@ def _run_M(m, X):
         rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
         rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (M_tt) translational block of M
         M_tt_rrrrs_xx += rrrrs_Q_xx
@@ -4781,17 +4802,17 @@ def _run_M(m, X):
             rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
             rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
             rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
-            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t,
-            rrrs_h_2_t, rrrs_h_2_t_2, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
             rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -4801,56 +4822,60 @@ def _run_M(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -4882,8 +4907,8 @@ def _run_M(m, X):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4907,11 +4932,11 @@ def _run_M(m, X):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_h_2_t_19*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
-            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_20) -
-            rrrs_h_2_t_20*(rrrs_Jc_2_in_axes2_xy*rrrs_h_2_t_19 -
-            rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
@@ -4926,10 +4951,10 @@ def _run_M(m, X):
         rrrs_d_Gamma_1_t = rrrs_D_1_3*rrrs_w_3_in_axes3_y
         rrrs_d_Gamma_1_in_axes3_x = (
         rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_z +
-            rrrs_w_2_in_axes3_x*(rrrs_h_2_t_19*(rrrs_J_2_in_spec2_xz +
-            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
-            rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x - rrrs_h_2_t_20*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
+            rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t) - rrrs_d_Gamma_1_t*rrrs_r_2_in_axes3_x -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         rrrs_d_Gamma_1_in_axes3_y = rrrs_d_Gamma_1_t - rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_z
         rrrs_d_Gamma_1_in_axes3_z = (
@@ -5011,8 +5036,8 @@ def _run_M(m, X):
         rrrs_M_aa_t_5 = rrrs_M_ta_t_2*rrrs_q_z + rrrs_M_ta_t_9*rrrs_q_x
         rrrs_M_aa_t_6 = rrrs_M_ta_t_2*rrrs_q_y + rrrs_M_ta_t_6*rrrs_q_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -5205,17 +5230,17 @@ def _run_Z(m, X, V):
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
             rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
             rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
-            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
-            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
-            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
-            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
-            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+            rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+            rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz,
+            rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+            rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x,
             rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
@@ -5224,7 +5249,7 @@ def _run_Z(m, X, V):
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -5234,58 +5259,74 @@ def _run_Z(m, X, V):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -5299,21 +5340,21 @@ def _run_Z(m, X, V):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -5324,10 +5365,10 @@ def _run_Z(m, X, V):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -5382,13 +5423,11 @@ def _run_Z(m, X, V):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
-        rrrrs_omega_1_t = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
-        )
+        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -5434,12 +5473,11 @@ def _run_Z(m, X, V):
         rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 - rrrrs_zeta_3_t - rrrrs_W_2_in_axes2_xz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -5450,12 +5488,12 @@ def _run_Z(m, X, V):
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
         rrrrs_bias_in_axes4_x = (
@@ -5489,8 +5527,8 @@ def _run_Z(m, X, V):
         # (rrrrs-qdd_3_o) remainder of: acceleration of joint 3
         rrrrs_qdd_3_o_t = inv_rrrrs_r_3_in_axes4_y*rrrrs_rel_o_in_axes4_x
         # (rrrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1_o
-        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_y = -rrrrs_qdd_1_o*rrrrs_s_2
         # (rrrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
         rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -5499,12 +5537,12 @@ def _run_Z(m, X, V):
         rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder of: angular acceleration of link 3
         rrrrs_alpha_3_o_in_axes3_x = (
-        rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+        rrrrs_alpha_2_o_in_axes2_x*rrrrs_c_3 + rrrrs_alpha_2_o_in_axes2_y*rrrrs_s_3 -
             rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_o_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_25 -
-            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_s_3
         )
         # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
         rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o_t
@@ -5539,20 +5577,20 @@ def _run_Z(m, X, V):
         # (rrrrs-a_o_3_o) remainder of: acceleration of the origin of joint 3
         rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_c_3
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_s_3
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
-        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes3_x = rrrrs_c_3*rrrrs_g_in_axes2_x + rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_g_in_axes3_y = rrrrs_c_3*rrrrs_g_in_axes2_y - rrrrs_g_in_axes2_x*rrrrs_s_3
         # (rrrrs-acc_3_o) remainder of: acceleration of the reference point of link 3, less gravity
         rrrrs_acc_3_o_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_s_3 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_o_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_c_3 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_o_in_axes3_z = (
         rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
@@ -5699,17 +5737,17 @@ def _run_Z(m, X, V):
         )
         # (rrrrs-N_2_o) remainder of: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_o_in_axes2_x = (
-        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_25 -
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_c_3 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_s_3
         )
         rrrrs_N_2_o_in_axes2_y = (
-        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_s_3 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_c_3 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_o_in_axes2_z = (
         rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_25)
+            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
+            rrrrs_f_3_o_in_axes3_x*rrrrs_s_3)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -5719,8 +5757,8 @@ def _run_Z(m, X, V):
         rrrrs_mu_1_o_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_mu_1_t
         # (rrrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_o_in_axes1_z = (
-        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_6 -
-            rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_7
+        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_c_2 -
+            rrrrs_N_2_o_in_axes2_y*rrrrs_s_2
         )
         # (rrrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
@@ -5769,10 +5807,10 @@ def _run_Z(m, X, V):
         rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
         rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (Z_t) translational part of Z
         Z_t_rrrrs_x += rrrrs_U_x
@@ -5789,20 +5827,20 @@ def _run_Z(m, X, V):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -5812,56 +5850,60 @@ def _run_Z(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -5903,8 +5945,8 @@ def _run_Z(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -5926,8 +5968,8 @@ def _run_Z(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -5968,8 +6010,8 @@ def _run_Z(m, X, V):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -6005,8 +6047,8 @@ def _run_Z(m, X, V):
         # (rrrs-qdd_2_o) remainder of: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder of: angular acceleration of link 1
-        rrrs_alpha_1_o_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1_o
-        rrrs_alpha_1_o_t = rrrs_h_2_t_20*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder of: angular acceleration of link 2
         rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
         rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
@@ -6089,8 +6131,8 @@ def _run_Z(m, X, V):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -6140,8 +6182,7 @@ def _run_Z(m, X, V):
         rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_mu_1_t
         # (rrrs-N_1_o) remainder of: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_o_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G_o) remainder of: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -6181,8 +6222,8 @@ def _run_Z(m, X, V):
         rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
         rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -6258,16 +6299,16 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -6277,75 +6318,91 @@ def _run_H(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -6359,10 +6416,10 @@ def _run_H(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -6400,10 +6457,10 @@ def _run_H(m, X):
         rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
         rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-w_1) reciprocal vector 1
         out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
@@ -6427,15 +6484,15 @@ def _run_H(m, X):
         out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -6445,56 +6502,60 @@ def _run_H(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -6524,8 +6585,8 @@ def _run_H(m, X):
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -6549,8 +6610,8 @@ def _run_H(m, X):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -6720,17 +6781,17 @@ def _run_required(m, X, V, A):
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
             rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
             rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
-            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
-            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
-            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
-            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
-            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+            rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+            rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz,
+            rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+            rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x,
             rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
@@ -6740,7 +6801,7 @@ def _run_required(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -6750,58 +6811,74 @@ def _run_required(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -6815,21 +6892,21 @@ def _run_required(m, X, V, A):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -6843,10 +6920,10 @@ def _run_required(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -6905,13 +6982,11 @@ def _run_required(m, X, V, A):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
-        rrrrs_omega_1_t = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
-        )
+        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -6965,12 +7040,11 @@ def _run_required(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 - rrrrs_zeta_3_t - rrrrs_W_2_in_axes2_xz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -6981,12 +7055,12 @@ def _run_required(m, X, V, A):
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
         rrrrs_bias_in_axes4_x = (
@@ -7028,8 +7102,8 @@ def _run_required(m, X, V, A):
         rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
-        rrrrs_alpha_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_y = -rrrrs_qdd_1*rrrrs_s_2
         # (rrrrs-alpha_2) angular acceleration of link 2
         rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
         rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -7040,12 +7114,11 @@ def _run_required(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_zeta_3_t
+        rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 + rrrrs_alpha_2_in_axes2_y*rrrrs_s_3 - rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - rrrrs_qdd_3_t
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -7076,19 +7149,19 @@ def _run_required(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_c_3
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_s_3
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
-        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes3_x = rrrrs_c_3*rrrrs_g_in_axes2_x + rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_g_in_axes3_y = rrrrs_c_3*rrrrs_g_in_axes2_y - rrrrs_g_in_axes2_x*rrrrs_s_3
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
@@ -7225,17 +7298,16 @@ def _run_required(m, X, V, A):
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_25 -
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
+            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         rrrrs_N_2_in_axes2_z = (
         rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
-            rrrrs_joint3_offset_x*(rrrrs_f_3_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_f_3_in_axes3_y*rrrrs_h_3_t_25)
+            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_in_axes3_y +
+            rrrrs_f_3_in_axes3_x*rrrrs_s_3)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -7244,8 +7316,7 @@ def _run_required(m, X, V, A):
         rrrrs_mu_1_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_mu_1_t
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_in_axes1_z = (
-        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_h_3_t_6 -
-            rrrrs_N_2_in_axes2_y*rrrrs_h_3_t_7
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_c_2 - rrrrs_N_2_in_axes2_y*rrrrs_s_2
         )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
@@ -7298,10 +7369,10 @@ def _run_required(m, X, V, A):
         rrrrs_H_a_3_y = rrrrs_q_x*rrrrs_w_3_t_10 - rrrrs_q_z*rrrrs_w_3_t_8
         rrrrs_H_a_3_z = rrrrs_q_y*rrrrs_w_3_t_8 - rrrrs_q_x*rrrrs_w_3_t_9
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rrrrs_c_x
@@ -7338,20 +7409,20 @@ def _run_required(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
             rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
             rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -7361,56 +7432,60 @@ def _run_required(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -7452,8 +7527,8 @@ def _run_required(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -7481,8 +7556,8 @@ def _run_required(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -7523,8 +7598,8 @@ def _run_required(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -7562,8 +7637,8 @@ def _run_required(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -7638,8 +7713,8 @@ def _run_required(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -7684,8 +7759,7 @@ def _run_required(m, X, V, A):
         rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -7731,8 +7805,8 @@ def _run_required(m, X, V, A):
         rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
         rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -7825,16 +7899,16 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -7844,69 +7918,84 @@ def _run_inverse_kinematics(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
         # (rrrrs-q_1) displacement of joint 1
         rrrrs_q_1 = atan2(rrrrs_s_1, rrrrs_c_1)
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-q_3) displacement of joint 3
-        rrrrs_q_3 = atan2(rrrrs_h_3_t_26, rrrrs_h_3_t_25)
+        rrrrs_q_3 = atan2(rrrrs_s_3, rrrrs_c_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-q_4) displacement of joint 4
         rrrrs_q_4 = atan2(-rrrrs_s_4_t, rrrrs_c_4)
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
         )
         # (rrrrs-q_1) displacement of joint 1
         out_q[_q_rrrrs[0][leg]] = rrrrs_q_1
@@ -7918,15 +8007,15 @@ def _run_inverse_kinematics(m, X):
         out_q[_q_rrrrs[3][leg]] = rrrrs_q_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -7936,62 +8025,66 @@ def _run_inverse_kinematics(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-q_1) displacement of joint 1
         rrrs_q_1 = atan2(rrrs_s_1, rrrs_c_1)
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-q_2) displacement of joint 2
-        rrrs_q_2 = atan2(rrrs_h_2_t_20, rrrs_h_2_t_19)
+        rrrs_q_2 = atan2(rrrs_s_2, rrrs_c_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-q_3) displacement of joint 3
         rrrs_q_3 = atan2(-rrrs_s_3_t, rrrs_c_3)
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
@@ -8060,18 +8153,18 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
             rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -8081,58 +8174,74 @@ def _run_joint_rates(m, X, V):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -8146,21 +8255,21 @@ def _run_joint_rates(m, X, V):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -8171,10 +8280,10 @@ def _run_joint_rates(m, X, V):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -8229,10 +8338,10 @@ def _run_joint_rates(m, X, V):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrrs[0][leg]] = rrrrs_qd_1
@@ -8244,15 +8353,15 @@ def _run_joint_rates(m, X, V):
         out_qd[_qd_rrrrs[3][leg]] = rrrrs_qd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -8262,56 +8371,60 @@ def _run_joint_rates(m, X, V):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -8353,8 +8466,8 @@ def _run_joint_rates(m, X, V):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -8376,8 +8489,8 @@ def _run_joint_rates(m, X, V):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -8478,11 +8591,11 @@ def _run_joint_accelerations(m, X, V, A):
     B_p_zy = W_p_yz + alpha_x
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
-            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
             rrrrs_w_4_in_axes4_y,
@@ -8490,7 +8603,7 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -8500,58 +8613,74 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -8565,21 +8694,21 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -8590,10 +8719,10 @@ def _run_joint_accelerations(m, X, V, A):
         axis_z_rrrrs_axes4_z = rrrrs_base_frame_zz*rrrrs_c_1 - rrrrs_base_frame_zy*rrrrs_s_1
         rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -8648,13 +8777,11 @@ def _run_joint_accelerations(m, X, V, A):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
-        rrrrs_omega_1_t = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
-        )
+        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -8702,12 +8829,11 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 - rrrrs_zeta_3_t - rrrrs_W_2_in_axes2_xz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -8717,12 +8843,12 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
         rrrrs_bias_in_axes4_x = (
@@ -8764,10 +8890,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrrs[0][leg]] = rrrrs_qdd_1
@@ -8779,15 +8905,15 @@ def _run_joint_accelerations(m, X, V, A):
         out_qdd[_qdd_rrrrs[3][leg]] = rrrrs_qdd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t,
-            rrrs_h_2_t_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -8797,56 +8923,60 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -8888,8 +9018,8 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -8911,8 +9041,8 @@ def _run_joint_accelerations(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -8947,8 +9077,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -8986,8 +9116,8 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -9093,17 +9223,17 @@ def _run_legs(m, X, V, A):
         inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
             rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
             rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
-            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
-            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
-            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
-            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
-            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
-            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
-            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
-            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
+            rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+            rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+            rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz,
+            rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+            rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_4_in_spec4_x,
             rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
@@ -9113,7 +9243,7 @@ def _run_legs(m, X, V, A):
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -9123,58 +9253,74 @@ def _run_legs(m, X, V, A):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
         rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
@@ -9188,21 +9334,21 @@ def _run_legs(m, X, V, A):
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         rrrrs_r_3_in_axes4_x = rrrrs_d_4_in_axes4_x + rrrrs_platform_joint_offset_x
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t + rrrrs_r_2_t_2*rrrrs_s_4_t
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_x = rrrrs_d_3_in_axes4_x + rrrrs_r_3_in_axes4_x
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -9216,10 +9362,10 @@ def _run_legs(m, X, V, A):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -9277,13 +9423,11 @@ def _run_legs(m, X, V, A):
             rrrrs_qd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qd_1
-        rrrrs_omega_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qd_1
-        rrrrs_omega_1_t = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y
-        )
+        rrrrs_omega_1_in_axes2_x = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = -rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
         rrrrs_omega_1_t_2 = (
-        rrrrs_h_3_t_25*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
         rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
         rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
@@ -9337,12 +9481,11 @@ def _run_legs(m, X, V, A):
         rrrrs_zeta_3_in_axes3_y = rrrrs_omega_1_t*rrrrs_qd_3_t
         # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrrs_beta_3_in_axes3_x = (
-        rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_25 - rrrrs_zeta_3_t -
-            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 - rrrrs_zeta_3_t - rrrrs_W_2_in_axes2_xz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_25 -
-            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
         )
         rrrrs_beta_3_in_axes4_y = (
         rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
@@ -9353,12 +9496,12 @@ def _run_legs(m, X, V, A):
         # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
         rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
         # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
-        rrrrs_d_2_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_x = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = -rrrrs_joint2_offset_x*rrrrs_s_2
         rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
         rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
-        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
         rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
         rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
         rrrrs_bias_in_axes4_x = (
@@ -9400,8 +9543,8 @@ def _run_legs(m, X, V, A):
         rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y + rrrrs_qdd_3_t*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_in_axes2_x = rrrrs_h_3_t_6*rrrrs_qdd_1
-        rrrrs_alpha_1_in_axes2_y = -rrrrs_h_3_t_7*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_x = rrrrs_c_2*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_y = -rrrrs_qdd_1*rrrrs_s_2
         # (rrrrs-alpha_2) angular acceleration of link 2
         rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
         rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
@@ -9412,12 +9555,11 @@ def _run_legs(m, X, V, A):
         rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
         rrrrs_alpha_3_in_axes3_x = (
-        rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_26 -
-            rrrrs_zeta_3_t
+        rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 + rrrrs_alpha_2_in_axes2_y*rrrrs_s_3 - rrrrs_zeta_3_t
         )
         rrrrs_alpha_3_in_axes3_y = (
-        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_h_3_t_25 -
-            rrrrs_alpha_2_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
         )
         rrrrs_alpha_3_in_axes3_z = rrrrs_ydd_2 - rrrrs_qdd_3_t
         # (rrrrs-B_3) acceleration tensor of link 3
@@ -9448,19 +9590,19 @@ def _run_legs(m, X, V, A):
         rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
         rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_25
-        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_acc_3_t_3 = rrrrs_a_o_3_in_axes2_x*rrrrs_c_3
+        rrrrs_acc_3_t_4 = -rrrrs_a_o_3_in_axes2_x*rrrrs_s_3
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
-        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_x*rrrrs_h_3_t_7 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_6
-        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_x*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
-        rrrrs_g_in_axes3_x = rrrrs_g_in_axes2_x*rrrrs_h_3_t_25 + rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
-        rrrrs_g_in_axes3_y = rrrrs_g_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes2_x*rrrrs_h_3_t_26
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_z + rrrrs_g_in_axes1_x*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_x - rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes3_x = rrrrs_c_3*rrrrs_g_in_axes2_x + rrrrs_g_in_axes2_y*rrrrs_s_3
+        rrrrs_g_in_axes3_y = rrrrs_c_3*rrrrs_g_in_axes2_y - rrrrs_g_in_axes2_x*rrrrs_s_3
         rrrrs_acc_3_in_axes3_x = (
-        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_g_in_axes3_x
+        rrrrs_acc_3_t_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 - rrrrs_g_in_axes3_x
         )
         rrrrs_acc_3_in_axes3_y = (
-        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_h_3_t_25 - rrrrs_g_in_axes3_y
+        rrrrs_acc_3_t_4 + rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 - rrrrs_g_in_axes3_y
         )
         rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_y
         # (rrrrs-f_3) inertia force of link 3 less its weight
@@ -9577,12 +9719,11 @@ def _run_legs(m, X, V, A):
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrrs_N_2_in_axes2_x = (
-        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_25 -
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_26
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
         )
         rrrrs_N_2_in_axes2_y = (
-        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_h_3_t_26 +
-            rrrrs_N_3_in_axes3_y*rrrrs_h_3_t_25 - rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
+            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrrs_mu_1_t = (
@@ -9591,8 +9732,7 @@ def _run_legs(m, X, V, A):
         rrrrs_mu_1_in_axes1_z = rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_mu_1_t
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrrs_N_1_in_axes1_z = (
-        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_h_3_t_6 -
-            rrrrs_N_2_in_axes2_y*rrrrs_h_3_t_7
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_c_2 - rrrrs_N_2_in_axes2_y*rrrrs_s_2
         )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
@@ -9635,10 +9775,10 @@ def _run_legs(m, X, V, A):
             axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z
         )
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
-            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size)
         )
         # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_x
@@ -9656,20 +9796,20 @@ def _run_legs(m, X, V, A):
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
             rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
-            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Sigma_2_in_axes2_xx,
-            rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz, rrrs_Sigma_3_in_axes3_xx,
-            rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
             rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
             rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -9679,56 +9819,60 @@ def _run_legs(m, X, V, A):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -9770,8 +9914,8 @@ def _run_legs(m, X, V, A):
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         rrrs_r_2_in_axes3_x = rrrs_d_3_in_axes3_x + rrrs_platform_joint_offset_x
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -9799,8 +9943,8 @@ def _run_legs(m, X, V, A):
             axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qd_1
-        rrrs_omega_1_in_axes2_y = -rrrs_h_2_t_20*rrrs_qd_1
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes2_y = -rrrs_qd_1*rrrs_s_2
         rrrs_omega_1_in_axes3_x = (
         rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
         )
@@ -9841,8 +9985,8 @@ def _run_legs(m, X, V, A):
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_h_2_t_19*rrrs_joint2_offset_x
-        rrrs_bias_t_2 = rrrs_h_2_t_20*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
         rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
             rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
@@ -9880,8 +10024,8 @@ def _run_legs(m, X, V, A):
         # (rrrs-qdd_3) acceleration of joint 3
         rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_in_axes2_x = rrrs_h_2_t_19*rrrs_qdd_1
-        rrrs_alpha_1_t = rrrs_h_2_t_20*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
         rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
         rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
@@ -9956,8 +10100,8 @@ def _run_legs(m, X, V, A):
         rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_g_in_axes1_x*rrrs_h_2_t_20 + rrrs_g_in_axes1_z*rrrs_h_2_t_19
-        rrrs_g_in_axes2_y = rrrs_g_in_axes1_x*rrrs_h_2_t_19 - rrrs_g_in_axes1_z*rrrs_h_2_t_20
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_t_6 = rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_7 = rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 - rrrs_mu_2_t_5)
         rrrs_mu_2_t_8 = rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4)
@@ -10002,8 +10146,7 @@ def _run_legs(m, X, V, A):
         rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_mu_1_t
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_h_2_t_19 -
-            rrrs_N_2_in_axes2_y*rrrs_h_2_t_20
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -10041,8 +10184,8 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0) &
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
             (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
             _TOLERANCE * rrrs_size)
         )
@@ -10120,14 +10263,14 @@ def _run_potential(m, X):
     potential_t_3, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
-            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_x,
-            rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
-            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
-            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_acc_3_t,
+            rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+            rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_x, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z,
+            rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z,
+            rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z,
             rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
             rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link1_mass,
             rrrrs_link2_mass, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
@@ -10136,7 +10279,7 @@ def _run_potential(m, X):
             rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -10146,95 +10289,104 @@ def _run_potential(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
-        rrrrs_h_3_in_axes2_x = (
-        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_25 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_h_3_in_axes2_x = rrrrs_c_3*rrrrs_h_3_in_spec3_x - rrrrs_h_3_in_spec3_y*rrrrs_s_3
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
         rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
         rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_in_axes2_x = (
-        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_25
-        )
+        rrrrs_P_c_3_in_axes2_x = -rrrrs_c_3*rrrrs_h_3_in_spec3_y - rrrrs_h_3_in_spec3_x*rrrrs_s_3
         # (potential) potential energy
         rrrrs_b_in_spec1_y = rrrrs_c_1*rrrrs_potential_t + rrrrs_potential_t_2*rrrrs_s_1
         rrrrs_b_in_spec1_z = rrrrs_c_1*rrrrs_potential_t_2 - rrrrs_potential_t*rrrrs_s_1
         rrrrs_potential_t_5 = rrrrs_c_4*rrrrs_h_4_in_spec4_x + rrrrs_h_4_in_spec4_y*rrrrs_s_4_t
         rrrrs_potential_t_6 = rrrrs_c_4*rrrrs_h_4_in_spec4_y - rrrrs_h_4_in_spec4_x*rrrrs_s_4_t
-        rrrrs_potential_t_7 = (
-        rrrrs_h_3_t_25*rrrrs_potential_t_5 - rrrrs_h_3_t_26*rrrrs_potential_t_6
-        )
-        rrrrs_potential_t_8 = (
-        rrrrs_h_3_t_25*rrrrs_potential_t_6 + rrrrs_h_3_t_26*rrrrs_potential_t_5
-        )
+        rrrrs_potential_t_7 = rrrrs_c_3*rrrrs_potential_t_5 - rrrrs_potential_t_6*rrrrs_s_3
+        rrrrs_potential_t_8 = rrrrs_c_3*rrrrs_potential_t_6 + rrrrs_potential_t_5*rrrrs_s_3
         rrrrs_potential_t_9 = (
         rrrrs_h_1_in_spec1_x + rrrrs_potential_t_3 + rrrrs_potential_t_4 +
-            rrrrs_P_c_3_in_axes2_x*rrrrs_h_3_t_7 + rrrrs_h_2_in_spec2_x*rrrrs_h_3_t_6 +
-            rrrrs_h_3_in_axes2_x*rrrrs_h_3_t_6 + rrrrs_h_3_t_6*rrrrs_potential_t_7 +
+            rrrrs_P_c_3_in_axes2_x*rrrrs_s_2 + rrrrs_c_2*rrrrs_h_2_in_spec2_x +
+            rrrrs_c_2*rrrrs_h_3_in_axes2_x + rrrrs_c_2*rrrrs_potential_t_7 +
             rrrrs_link3_mass*(rrrrs_b_in_spec1_x + rrrrs_joint2_offset_x +
-            rrrrs_h_3_t_6*rrrrs_joint3_offset_x) - rrrrs_h_2_in_spec2_y*rrrrs_h_3_t_7 -
-            rrrrs_h_3_t_7*rrrrs_potential_t_8
+            rrrrs_c_2*rrrrs_joint3_offset_x) - rrrrs_h_2_in_spec2_y*rrrrs_s_2 -
+            rrrrs_potential_t_8*rrrrs_s_2
         )
         rrrrs_potential_t_10 = (
         rrrrs_h_1_in_spec1_y + rrrrs_b_in_spec1_y*rrrrs_link1_mass +
-            rrrrs_b_in_spec1_y*rrrrs_link2_mass + rrrrs_h_2_in_spec2_x*rrrrs_h_3_t_7 +
-            rrrrs_h_2_in_spec2_y*rrrrs_h_3_t_6 + rrrrs_h_3_in_axes2_x*rrrrs_h_3_t_7 +
-            rrrrs_h_3_t_6*rrrrs_potential_t_8 + rrrrs_h_3_t_7*rrrrs_potential_t_7 +
-            rrrrs_link3_mass*(rrrrs_b_in_spec1_y + rrrrs_h_3_t_7*rrrrs_joint3_offset_x) -
-            rrrrs_P_c_3_in_axes2_x*rrrrs_h_3_t_6
+            rrrrs_b_in_spec1_y*rrrrs_link2_mass + rrrrs_c_2*rrrrs_h_2_in_spec2_y +
+            rrrrs_c_2*rrrrs_potential_t_8 + rrrrs_h_2_in_spec2_x*rrrrs_s_2 +
+            rrrrs_h_3_in_axes2_x*rrrrs_s_2 + rrrrs_link3_mass*(rrrrs_b_in_spec1_y +
+            rrrrs_joint3_offset_x*rrrrs_s_2) + rrrrs_potential_t_7*rrrrs_s_2 -
+            rrrrs_P_c_3_in_axes2_x*rrrrs_c_2
         )
         rrrrs_potential_t_11 = (
         rrrrs_g_in_axes1_x*rrrrs_potential_t_10 + rrrrs_g_in_axes1_y*(rrrrs_h_1_in_spec1_z +
@@ -10243,28 +10395,27 @@ def _run_potential(m, X):
             rrrrs_b_in_spec1_z*rrrrs_link3_mass) + rrrrs_g_in_axes1_z*rrrrs_potential_t_9
         )
         ok = (
-        ok & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_23 >=
-            0.0)
+        ok & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) & (abs(rrrrs_rho2_3) >
+            _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
         )
         # (potential) potential energy
         potential_t_3 += rrrrs_potential_t_11
     potential_t_2, = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
-            rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x,
-            rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_2_t, rrrs_h_2_t_2,
-            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
+            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
             rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
             rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
             rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -10274,55 +10425,58 @@ def _run_potential(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_in_axes1_z = (
-        rrrs_h_2_in_spec2_x*rrrs_h_2_t_19 - rrrs_h_2_in_spec2_y*rrrs_h_2_t_20
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
+        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        rrrs_h_2_in_axes1_z = rrrs_c_2*rrrs_h_2_in_spec2_x - rrrs_h_2_in_spec2_y*rrrs_s_2
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
@@ -10334,17 +10488,17 @@ def _run_potential(m, X):
         rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
         rrrs_potential_t_7 = (
         rrrs_g_in_axes1_x*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
-            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_h_2_in_spec2_x*rrrs_h_2_t_20 +
-            rrrs_h_2_in_spec2_y*rrrs_h_2_t_19 + rrrs_h_2_t_19*rrrs_potential_t_6 +
-            rrrs_h_2_t_20*rrrs_potential_t_5) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
+            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_c_2*rrrs_h_2_in_spec2_y +
+            rrrs_c_2*rrrs_potential_t_6 + rrrs_h_2_in_spec2_x*rrrs_s_2 +
+            rrrs_potential_t_5*rrrs_s_2) + rrrs_g_in_axes1_y*(rrrs_h_1_in_spec1_z +
             rrrs_h_2_in_spec2_z + rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
             rrrs_b_in_spec1_z*rrrs_link2_mass) + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x +
             rrrs_h_2_in_axes1_z + rrrs_potential_t_3 + rrrs_potential_t_4 +
-            rrrs_h_2_t_19*rrrs_potential_t_5 - rrrs_h_2_t_20*rrrs_potential_t_6)
+            rrrs_c_2*rrrs_potential_t_5 - rrrs_potential_t_6*rrrs_s_2)
         )
         ok = (
-        ok & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_h_2_t_16) >
-            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_h_2_t_17 >= 0.0)
+        ok & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0)
         )
         # (potential) potential energy
         potential_t_2 += rrrs_potential_t_7
@@ -10411,16 +10565,16 @@ def _run_condition(m, X):
     for leg, k in legs[0]:
         (
         inv_rrrrs_rho2_3_t, inv_rrrrs_size, inv_rrrrs_size_t, inv_rrrrs_size_t_2,
-            inv_rrrrs_size_t_3, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t, rrrrs_h_3_t_2,
-            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        # (rrrrs-S) from the base point to the connection point
         rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
@@ -10430,75 +10584,91 @@ def _run_condition(m, X):
         rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
-        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
-        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
-        rrrrs_h_3_t_6 = cos(rrrrs_y_2_extra)
-        rrrrs_h_3_t_7 = sin(rrrrs_y_2_extra)
-        rrrrs_h_3_t_8 = (
-        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zy*rrrrs_h_3_t_5
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_S_in_turn1_x = (
+        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
+            rrrrs_S_z*rrrrs_base_frame_zy
         )
-        rrrrs_h_3_t_9 = (
-        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zz*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_y = (
+        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
+            rrrrs_S_z*rrrrs_base_frame_zz
         )
-        rrrrs_h_3_t_10 = (
-        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
-            rrrrs_base_frame_zx*rrrrs_h_3_t_5
+        rrrrs_S_in_turn1_z = (
+        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
+            rrrrs_S_z*rrrrs_base_frame_zx
         )
-        rrrrs_h_3_t_11 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
-        rrrrs_h_3_t_12 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_11)
-        rrrrs_h_3_t_13 = rrrrs_h_3_t_10 - rrrrs_joint2_offset_x
-        rrrrs_h_3_t_14 = rrrrs_h_3_t_12*rrrrs_h_3_t_7
-        rrrrs_h_3_t_15 = rrrrs_h_3_t_12*rrrrs_h_3_t_6
-        rrrrs_h_3_t_16 = rrrrs_h_3_t_15 - rrrrs_h_3_t_13*rrrrs_h_3_t_7
-        rrrrs_h_3_t_17 = rrrrs_h_3_t_14 + rrrrs_h_3_t_13*rrrrs_h_3_t_6 - rrrrs_joint3_offset_x
-        rrrrs_h_3_t_18 = rrrrs_h_3_t_16*rrrrs_h_3_t_16 + rrrrs_h_3_t_17*rrrrs_h_3_t_17
-        rrrrs_h_3_t_19 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_18 - rrrrs_h_3_t_2
-        rrrrs_h_3_t_20 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_21 = rrrrs_h_3_t_16*rrrrs_joint4_offset_x
-        rrrrs_h_3_t_22 = rrrrs_h_3_t_20*rrrrs_h_3_t_20 + rrrrs_h_3_t_21*rrrrs_h_3_t_21
-        rrrrs_h_3_t_23 = rrrrs_h_3_t_22 - rrrrs_h_3_t_19*rrrrs_h_3_t_19
-        rrrrs_h_3_t_24 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_23)
-        inv_rrrrs_h_3_t_22 = 1.0/rrrrs_h_3_t_22
-        rrrrs_h_3_t_25 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_20 - rrrrs_h_3_t_21*rrrrs_h_3_t_24)
+        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrrs_c_2 = cos(rrrrs_y_2_extra)
+        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrrs_s_2 = sin(rrrrs_y_2_extra)
+        # (rrrrs-rho2_1) squared amplitude
+        rrrrs_rho2_1 = (
+        rrrrs_S_in_turn1_x*rrrrs_S_in_turn1_x + rrrrs_S_in_turn1_y*rrrrs_S_in_turn1_y
         )
-        rrrrs_h_3_t_26 = (
-        inv_rrrrs_h_3_t_22*(rrrrs_h_3_t_19*rrrrs_h_3_t_21 + rrrrs_h_3_t_20*rrrrs_h_3_t_24)
-        )
+        # (rrrrs-root_1) root, with the sign of the branch
+        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_h_3_t_11 = 1.0/rrrrs_h_3_t_11
-        rrrrs_c_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_8
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_x*rrrrs_root_1
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_h_3_t_11*rrrrs_h_3_t_12*rrrrs_h_3_t_9
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_S_in_turn1_y*rrrrs_root_1
+        # (rrrrs-x_2) from the origin of joint 2 to the connection point
+        rrrrs_x_2_in_axes1_z = rrrrs_S_in_turn1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t - rrrrs_s_2*rrrrs_x_2_in_axes1_z
+        # (rrrrs-x_3) from the origin of joint 3 to the connection point
+        rrrrs_x_3_t = rrrrs_root_1*rrrrs_s_2
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_x_3_t + rrrrs_c_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+        rrrrs_Kd_3_t_3 = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
+        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
+        # (rrrrs-rho2_3) squared amplitude
+        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
+        # (rrrrs-disc_3) discriminant
+        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
+        # (rrrrs-root_3) root, with the sign of the branch
+        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
+        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
+        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
+        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
+        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
         # (rrrrs-x_4) from the origin of joint 4 to the connection point
         rrrrs_x_4_in_axes3_x = (
-        inv_rrrrs_size_t*rrrrs_h_3_t_19*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
         # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
         rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
         # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
         rrrrs_s_4_t = (
-        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_24*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
         rrrrs_r_3_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_t = rrrrs_h_3_t_25*rrrrs_joint3_offset_x
-        rrrrs_r_2_t_2 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_r_2_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
         rrrrs_d_3_in_axes4_y = rrrrs_r_2_t*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_2_t_2
         rrrrs_r_2_in_axes4_y = rrrrs_d_3_in_axes4_y + rrrrs_r_3_in_axes4_y
         # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_t = rrrrs_h_3_t_25*rrrrs_h_3_t_6 - rrrrs_h_3_t_26*rrrrs_h_3_t_7
-        rrrrs_v_1_t_2 = -rrrrs_h_3_t_25*rrrrs_h_3_t_7 - rrrrs_h_3_t_26*rrrrs_h_3_t_6
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_2 = -rrrrs_c_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_s_2
         rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
         rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
-        rrrrs_v_1_t_3 = rrrrs_h_3_t_14 + rrrrs_h_3_t_10*rrrrs_h_3_t_6
-        rrrrs_v_1_t_4 = rrrrs_h_3_t_15 - rrrrs_h_3_t_10*rrrrs_h_3_t_7
-        rrrrs_v_1_t_5 = rrrrs_h_3_t_25*rrrrs_v_1_t_3 + rrrrs_h_3_t_26*rrrrs_v_1_t_4
-        rrrrs_v_1_t_6 = rrrrs_h_3_t_25*rrrrs_v_1_t_4 - rrrrs_h_3_t_26*rrrrs_v_1_t_3
+        rrrrs_v_1_t_3 = rrrrs_x_3_t + rrrrs_S_in_turn1_z*rrrrs_c_2
+        rrrrs_v_1_t_4 = rrrrs_x_2_t - rrrrs_S_in_turn1_z*rrrrs_s_2
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
         rrrrs_v_1_in_axes4_z = (
         rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
             rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
@@ -10512,10 +10682,10 @@ def _run_condition(m, X):
         rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
         rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = rrrrs_h_3_t_25*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_26
-        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_25 + rrrrs_h_3_t_26*rrrrs_s_4_t
-        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
-        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
         rrrrs_w_3_t_5 = rrrrs_c_1*rrrrs_w_3_t_4
         rrrrs_w_3_t_6 = rrrrs_s_1*rrrrs_w_3_t_4
         axis_y_rrrrs_axes4_x = (
@@ -10545,8 +10715,8 @@ def _run_condition(m, X):
         rrrrs_w_3_t_9 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_in_axes4_y
         rrrrs_w_3_t_10 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_in_axes4_y
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrrs_pivot_size = abs(rrrrs_h_3_t_11)
-        rrrrs_pivot_size_2 = abs(rrrrs_h_3_t_22)
+        rrrrs_pivot_size = abs(rrrrs_rho2_1)
+        rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
         rrrrs_pivot_size_3 = abs(rrrrs_v_1_in_axes4_z)
         rrrrs_pivot_size_4 = abs(rrrrs_r_3_in_axes4_y)
         rrrrs_least_pivots = (
@@ -10571,12 +10741,12 @@ def _run_condition(m, X):
             rrrrs_spread_t_3*rrrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrrs_h_3_t_11) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_h_3_t_22) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
+        clear & (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
             (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
             _TOLERANCE * rrrrs_size)
         )
-        reached = reached & (rrrrs_h_3_t_23 >= 0.0)
+        reached = reached & (rrrrs_disc_3 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrrs += rrrrs_spread_t_4
         # (rrrrs-w_1) reciprocal vector 1
@@ -10601,19 +10771,20 @@ def _run_condition(m, X):
         out_H[_H_rrrrs[13][leg]] = -rrrrs_w_3_t_7
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
-        out_reach[_reach_rrrrs[0][leg]] = rrrrs_h_3_t_23
+        out_reach[_reach_rrrrs[0][leg]] = rrrrs_disc_3
     spread_rrrs, = [0.0] * 1
     for leg, k in legs[1]:
         (
         inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_h_2_t, rrrs_h_2_t_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3,
         ) = k
-        # (rrrs-h_2) first moment of link 2 about the origin of link 2
+        # (rrrs-S) from the base point to the connection point
         rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
@@ -10623,56 +10794,60 @@ def _run_condition(m, X):
         rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_h_2_t_3 = rrrs_q_x + t_x - rrrs_base_point_x
-        rrrs_h_2_t_4 = rrrs_q_y + t_y - rrrs_base_point_y
-        rrrs_h_2_t_5 = rrrs_q_z + t_z - rrrs_base_point_z
-        rrrs_h_2_t_6 = (
-        rrrs_base_frame_xy*rrrs_h_2_t_3 + rrrs_base_frame_yy*rrrs_h_2_t_4 +
-            rrrs_base_frame_zy*rrrs_h_2_t_5
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
+        rrrs_S_in_turn1_x = (
+        rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        rrrs_h_2_t_7 = (
-        rrrs_base_frame_xz*rrrs_h_2_t_3 + rrrs_base_frame_yz*rrrs_h_2_t_4 +
-            rrrs_base_frame_zz*rrrs_h_2_t_5
+        rrrs_S_in_turn1_y = (
+        rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
-        rrrs_h_2_t_8 = (
-        rrrs_base_frame_xx*rrrs_h_2_t_3 + rrrs_base_frame_yx*rrrs_h_2_t_4 +
-            rrrs_base_frame_zx*rrrs_h_2_t_5
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
-        rrrs_h_2_t_9 = rrrs_h_2_t_6*rrrs_h_2_t_6 + rrrs_h_2_t_7*rrrs_h_2_t_7
-        rrrs_h_2_t_10 = rrrs_branch_1*sqrt(rrrs_h_2_t_9)
-        rrrs_h_2_t_11 = rrrs_h_2_t_8 - rrrs_joint2_offset_x
-        rrrs_h_2_t_12 = rrrs_h_2_t_11*rrrs_h_2_t_11 + rrrs_h_2_t_9
-        rrrs_h_2_t_13 = rrrs_h_2_t + 0.5*rrrs_h_2_t_12 - rrrs_h_2_t_2
-        rrrs_h_2_t_14 = rrrs_h_2_t_11*rrrs_joint3_offset_x
-        rrrs_h_2_t_15 = rrrs_h_2_t_10*rrrs_joint3_offset_x
-        rrrs_h_2_t_16 = rrrs_h_2_t_14*rrrs_h_2_t_14 + rrrs_h_2_t_15*rrrs_h_2_t_15
-        rrrs_h_2_t_17 = rrrs_h_2_t_16 - rrrs_h_2_t_13*rrrs_h_2_t_13
-        rrrs_h_2_t_18 = rrrs_branch_2*sqrt(rrrs_h_2_t_17)
-        inv_rrrs_h_2_t_16 = 1.0/rrrs_h_2_t_16
-        rrrs_h_2_t_19 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_14 - rrrs_h_2_t_15*rrrs_h_2_t_18)
-        )
-        rrrs_h_2_t_20 = (
-        inv_rrrs_h_2_t_16*(rrrs_h_2_t_13*rrrs_h_2_t_15 + rrrs_h_2_t_14*rrrs_h_2_t_18)
-        )
+        # (rrrs-rho2_1) squared amplitude
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
+        # (rrrs-root_1) root, with the sign of the branch
+        rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_h_2_t_9 = 1.0/rrrs_h_2_t_9
-        rrrs_c_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_6
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_h_2_t_9*rrrs_h_2_t_10*rrrs_h_2_t_7
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
+        # (rrrs-x_2) from the origin of joint 2 to the connection point
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
+        # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
+        # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        # (rrrs-Ks_2) factor of the sine in the equation of joint 2
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
+        # (rrrs-rho2_2) squared amplitude
+        rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
+        # (rrrs-disc_2) discriminant
+        rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
+        # (rrrs-root_2) root, with the sign of the branch
+        rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
-        inv_rrrs_size_t*rrrs_h_2_t_13*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
         rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrs_s_3_t = (
-        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_h_2_t_18*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_h_2_t_19 + rrrs_h_2_t_20*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_h_2_t_19*rrrs_s_3_t - rrrs_c_3*rrrs_h_2_t_20
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
         axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
         axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
         axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
@@ -10702,8 +10877,8 @@ def _run_condition(m, X):
         # (rrrs-r_2) from joint 2 to the connection point, along the links
         rrrs_r_2_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_t = rrrs_h_2_t_10*rrrs_h_2_t_20 + rrrs_h_2_t_19*rrrs_h_2_t_8
-        rrrs_v_1_t_2 = rrrs_h_2_t_10*rrrs_h_2_t_19 - rrrs_h_2_t_20*rrrs_h_2_t_8
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -10719,8 +10894,8 @@ def _run_condition(m, X):
         rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
         rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rrrs_pivot_size = abs(rrrs_h_2_t_9)
-        rrrs_pivot_size_2 = abs(rrrs_h_2_t_16)
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
         rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
         rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
         rrrs_least_pivots = (
@@ -10745,12 +10920,11 @@ def _run_condition(m, X):
             rrrs_spread_t_3*rrrs_spread_t_3
         )
         clear = (
-        clear & (abs(rrrs_h_2_t_9) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_h_2_t_16) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
-            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
-            _TOLERANCE * rrrs_size)
+        clear & (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) & (abs(rrrs_rho2_2) >
+            _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE *
+            rrrs_size) & (abs(rrrs_r_2_in_axes3_y) > _TOLERANCE * rrrs_size)
         )
-        reached = reached & (rrrs_h_2_t_17 >= 0.0)
+        reached = reached & (rrrs_disc_2 >= 0.0)
         # (spread) rms distance of the platform points from their centroid
         spread_rrrs += rrrs_spread_t_4
         # (rrrs-w_1) reciprocal vector 1
@@ -10771,7 +10945,7 @@ def _run_condition(m, X):
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
-        out_reach[_reach_rrrs[0][leg]] = rrrs_h_2_t_17
+        out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
     # (spread) rms distance of the platform points from their centroid
     spread = sqrt(0.3333333333333333*spread_rrrrs + 0.3333333333333333*spread_rrrs)
     # (spread) rms distance of the platform points from their centroid
