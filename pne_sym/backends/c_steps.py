@@ -35,6 +35,7 @@ from pne_sym.backends.c_text import (
     words_of,
 )
 from pne_sym.backends.scalar import wrap
+from pne_sym.backends.steps import Citations
 from pne_sym.backends.templating import render
 from pne_sym.program.interpret import HALVINGS
 from pne_sym.program.public import Apply, Argument, PublicFunction, Run, Search, Step, Value
@@ -75,9 +76,10 @@ class Steps:
     def routine(self) -> Routine:
         """Outputs, state by state, and codes of w states from inputs, state by state."""
         lines = [f"start({self.arrays.w}, &why);", *self.arrays.inputs(), *self._begun()]
+        cited = Citations(self.bundle.program, "/* {} */")
         for step in self.steps:
-            lines += self._step(step)
-        lines += Results(self.arrays, self.used).lines()
+            lines += cited.lines(step, self._step(step))
+        lines += [*cited.end(), *Results(self.arrays, self.used).lines()]
         buffers = [*self.arrays.buffers, *self.solves.buffer()]
         aligned = "ALIGNED " * self.lanes
         head = self.arrays.tables + (listing(f"{aligned}real ", buffers, ";") if buffers else [])

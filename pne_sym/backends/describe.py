@@ -164,7 +164,8 @@ def _in_words(manipulator: Manipulator, leg: int, joint: int) -> str:
 
 def equation_titles(derivation: Derivation) -> dict[str, str]:
     """Equation id -> title."""
-    return {e.id: e.title for e in derivation.equations()}
+    titles = {e.id: e.title for e in derivation.equations()}
+    return titles | {r.id: r.title for r in derivation.relations}
 
 
 def field_views(bundle: Bundle) -> tuple[FieldView, ...]:

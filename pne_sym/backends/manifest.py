@@ -121,6 +121,7 @@ def spec_digest(bundle: Bundle) -> str:
 def derivation_digest(bundle: Bundle) -> str:
     """SHA-256 of the named equations."""
     lines = [f"{e.id} {e.name} = {e.rhs}" for e in bundle.derivation.equations()]
+    lines += [f"{r.id} = {r.rhs}" for r in bundle.derivation.relations]
     return _digest("\n".join(lines))
 
 

@@ -10,7 +10,7 @@ from pne_sym.backends.orders import order_at_home
 from pne_sym.backends.python_public import definition, rows
 from pne_sym.backends.python_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
-from pne_sym.backends.steps import COMMON
+from pne_sym.backends.steps import COMMON, Citations
 from pne_sym.program.ir import Program
 from pne_sym.program.public import Apply, PublicFunction, Run, Search, Step
 
@@ -85,14 +85,15 @@ class Orders:
 def steps_text(program: Program, function: PublicFunction, orders: Orders) -> str:
     """The steps as a function of a mode and all inputs, states last, which returns a tuple."""
     judged = set() if function.gives_status else judged_functions(program)
-    lines = []
+    lines, cited = list[str](), Citations(program, "# {}")
     for step in function.steps:
         if isinstance(step, Apply):
             order = orders.named(function, step) if step.operation == "solve" else ""
             targets = ", ".join(target.name for target in step.targets)
-            lines += _wrapped(f"{targets} = {applied(step, order)}")
+            text = _wrapped(f"{targets} = {applied(step, order)}")
         else:
-            lines += _step(program, step, judged)
+            text = _step(program, step, judged)
+        lines += cited.lines(step, text)
     if _closes(program, function):
         lines.insert(0, "q = _closed(m, X, q0)")
     outputs = ", ".join(output.value.name for output in function.outputs)

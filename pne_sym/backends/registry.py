@@ -24,13 +24,13 @@ _C = Syntax(
     comments=("/*", "//"),
     closing="*/",
     function=r"[A-Za-z_][\w\s*]*?\b(\w+)\(",
-    ends=r"(?:ok|return|for|if)\b|[{}]|#if|#end",
+    ends=r"(?:ok|return|for|if|SHORT_IN_VECTORS)\b|[{}]|#if|#end",
 )
 _MATLAB = Syntax(
     comments=("%",),
     function=r"function (?:[^=(]*= )?(\w+)\(",
     ends=r"(?:flat|array)_\w+ = |model\.|\w+ = (?:sum\(\(|(?:[XVAq]|base)\()"
-    r"|(?:singular|invalid|unreachable) =|(?:status|end)\b",
+    r"|(?:singular|invalid|unreachable) =|(?:status(?! = \w+\.internal\.flag\()|end)\b",
 )
 
 TARGETS: tuple[Target, ...] = (

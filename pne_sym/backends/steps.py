@@ -14,6 +14,43 @@ COMMON = {"add": "{0} + {1}", "subtract": "{0} - {1}", "same": "{0}", "negative"
 """Operations that are the same expressions in all languages."""
 
 
+class Citations:
+    """Ids of relations between arrays, in comments above their steps.
+
+    A loop has the comment inside, and an empty line stands behind what has none to end it: as
+    `backends.target.Syntax` finds statements.
+
+    Args:
+        program: has the relations.
+        comment: a comment in the language, with {} for its text.
+    """
+
+    def __init__(self, program: Program, comment: str) -> None:
+        self.titles = {r.id: r.title for r in program.relations}
+        self.comment = comment
+        self.told = self.open = ""  # the relation that was told last, and that of the next line
+
+    def lines(self, step: Step, lines: list[str]) -> list[str]:
+        """Lines of a step, with what is to be said before them."""
+        id_ = step.equation if isinstance(step, Apply) and lines else ""
+        ends = self.end() if id_ != self.open else []
+        if not id_:
+            return [*ends, *lines]
+        begun = next((k for k, line in enumerate(lines, 1) if line.startswith("for (")), 0)
+        said = []
+        if begun or id_ != self.open:
+            title = f" {self.titles[id_]}" if id_ != self.told else ""
+            said = ["    " * bool(begun) + self.comment.format(f"({id_}){title}")]
+        self.told, self.open = id_, "" if begun else id_
+        return [*([] if begun else ends), *lines[:begun], *said, *lines[begun:]]
+
+    def end(self) -> list[str]:
+        """What ends the statements of a relation that is open."""
+        found = [""] * bool(self.open)
+        self.open = ""
+        return found
+
+
 class StepText:
     """Writes steps, in the forms of a language: texts with the parts in braces, a line each.
 
@@ -32,6 +69,7 @@ class StepText:
             {guess} behind the pose, with commas before them; with {halving} of steps or without.
         closing: finds the displacements q.
         first: where arrays begin to count.
+        comment: a comment, with {} for its text.
     """
 
     expressions: Mapping[str, str]
@@ -45,6 +83,7 @@ class StepText:
     search: str
     closing: str
     first = 0
+    comment: str
 
     def __init__(self, program: Program) -> None:
         self.program = program
@@ -54,12 +93,13 @@ class StepText:
         """The steps in order; displacements are closed before the first one that reads them."""
         lines: list[str] = []
         closed = False
+        cited = Citations(self.program, self.comment)
         for step in function.steps:
             if isinstance(step, Run) and not closed:
                 closed = "q" in self.program.functions[step.function].inputs
                 lines += [self.closing] if closed else []
-            lines += self._step(step)
-        return lines
+            lines += cited.lines(step, self._step(step))
+        return [*lines, *cited.end()]
 
     def others(self, name: str) -> str:
         """Inputs of a public function behind the pose, with commas before them."""

@@ -17,6 +17,7 @@ from pne_sym.derivation.paper import check_reference
 from pne_sym.derivation.parameters import NameTakenError, ParameterTable
 from pne_sym.derivation.quantity import Frame, Given, Quantity, Role
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
+from pne_sym.vector.arrays import Relation
 from pne_sym.vector.dimensions import DimensionError, dimension_of_unit
 
 
@@ -51,6 +52,7 @@ class Book:
         self.pose: list[Given] = []
         self.parameters = ParameterTable()
         self.outputs: list[Output] = []
+        self.relations: list[Relation] = []
         self.leg_types: list[LegTypeInfo] = []
         self.coordinates: Coordinates | None = None
         self._collected: dict[str, tuple[LinearForm, LinearForm] | None] = {}
@@ -271,4 +273,5 @@ class Book:
             tuple(self.leg_types),
             self.coordinates,
             self._shown(left_out),
+            tuple(self.relations),
         )

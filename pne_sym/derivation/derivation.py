@@ -10,9 +10,8 @@ from pne_sym.derivation.equation import Equation, ReciprocalBasis
 from pne_sym.derivation.frames import BodyFrame
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.derivation.quantity import Frame, Given, Quantity, Role
-from pne_sym.vector import (
-    LinearForm,
-)
+from pne_sym.vector import LinearForm
+from pne_sym.vector.arrays import Relation
 
 _JOINT_STATE = (Role.DISPLACEMENT, Role.RATE, Role.JOINT_ACCELERATION)
 
@@ -54,6 +53,7 @@ class Derivation:
         coordinates: names and order of what goes in and comes out.
         collected: name -> coefficients of the accelerations and remainder, by their names;
             None where only the remainder is wanted.
+        relations: equations between whole arrays, of all legs.
     """
 
     chapters: tuple[Chapter, ...]
@@ -68,6 +68,7 @@ class Derivation:
     leg_types: tuple[LegTypeInfo, ...] = ()
     coordinates: Coordinates | None = None
     collected: dict[str, LinearForm | None] = field(default_factory=dict)
+    relations: tuple[Relation, ...] = ()
 
     def equations(self) -> Iterator[Equation]:
         """All equations in order."""

@@ -85,6 +85,7 @@ def lower(derivation: Derivation) -> Program:
     meaning = Meaning(derivation, lowerings)
     _settle_signs(builder, meaning, slices)
     program = program_of(derivation, builder, slices, meaning)
+    program = replace(program, relations=derivation.relations)
     table = derivation.parameters
     outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
     verify(program, outside | {name: leg for name, (leg, _) in table.branches.items()})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
-from pne_sym.program.public import PublicFunction
+from pne_sym.program.public import PublicFunction, Value
 
 
 def actuator_functions(w: Writer) -> list[PublicFunction]:
@@ -114,18 +114,12 @@ def _motors(w: Writer) -> list[PublicFunction]:
     rates, torques = Algorithm(), Algorithm()
     coupled = "coupling" in w.program.shapes
     if coupled:
-        qd, ratios, coupling = rates.run(
-            "motors", w.program, "actuated_rates", "ratios", "coupling"
-        )
-        turning = rates.apply("multiply", ratios, rates.apply("times", coupling, qd))
-        per_turn, coupling = torques.run("motors", w.program, "per_turn", "coupling")
-        before = torques.apply("transposed", coupling)
-        before = torques.apply("solve", before, w.given("tau").value)
+        turning = _related(w, rates, "motor_rates")
+        torque = _related(w, torques, "motor_torques")
     else:
         (turning,) = rates.run("motors", w.program, "motor_rates")
         (per_turn,) = torques.run("motors", w.program, "per_turn")
-        before = w.given("tau").value
-    torque = torques.apply("multiply", per_turn, before)
+        torque = torques.apply("multiply", per_turn, w.given("tau").value)
     along = "the coupling times rates of the joints" if coupled else "rate"
     given = "the inverse of the coupling, transposed, times tau" if coupled else "tau"
     return [
@@ -146,3 +140,12 @@ def _motors(w: Writer) -> list[PublicFunction]:
             group="actuators",
         ),
     ]
+
+
+def _related(w: Writer, a: Algorithm, id_: str) -> Value:
+    """What a relation between arrays of coupled motors defines."""
+    (uses,) = (r.uses for r in w.program.relations if r.id == id_)
+    arrays = [name for name in uses if name != "tau"]
+    values = {"tau": w.given("tau").value}
+    values |= dict(zip(arrays, a.run("motors", w.program, *arrays), strict=True))
+    return a.relate(w.program, id_, values)

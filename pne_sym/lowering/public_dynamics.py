@@ -136,7 +136,7 @@ def _leg_reactions(w: Writer) -> PublicFunction:
     actuators = [values[name] for name in ("H", "Hk") if name in values]
     needed = a.apply("subtract", values["required"], w.external(a))
     tau, *lam = required_forces(w, a, needed, actuators)
-    efforts = [a.without_rotors(tau, values), *lam]
+    efforts = [a.without_rotors(w.program, tau, values), *lam]
     arrays = w.program.functions["legs"].arrays
     shape = w.program.shapes["leg_force"]
     found = dict(zip(arrays, a.run("legs", w.program, *arrays), strict=True))

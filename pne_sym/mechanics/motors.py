@@ -11,12 +11,22 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Output, Rule
+from pne_sym.derivation import Book, Law, Output, Rule
 from pne_sym.mechanics.joint_forces import Motor
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.live import note, of_all
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import linear_form
+from pne_sym.vector.arrays import (
+    Applied,
+    Relation,
+    product,
+    scale_columns,
+    scale_rows,
+    solution,
+    times,
+    transposed,
+)
 
 _DIRECT = Motor()
 
@@ -30,6 +40,7 @@ def write_motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
     coupling = manipulator.coupling
     if coupling is not None:
         _matrix(book, coupling)
+        book.relations += _relations(has_motors=has_motors)
     if not has_motors and coupling is None:
         return
     order = [
@@ -76,6 +87,38 @@ def _coupled(leg: Leg, j: int) -> dict[str, Any]:
         "ratios": motor.ratio,
         "per_turn": motor.per_turn,
     }
+
+
+def _relations(*, has_motors: bool) -> list[Relation]:
+    """What coupled motors do, as relations between arrays of all legs."""
+
+    def load(motion: str) -> Applied:
+        """Torques of the rotors over the roots of their inertias."""
+        return scale_rows("rotor_roots", times("coupling", motion))
+
+    columns, of_joints = "rotor_columns", transposed("coupling")
+    turning = scale_rows("ratios", times("coupling", "actuated_rates"))
+    torques = scale_rows("per_turn", solution(of_joints, "tau"))
+    rows = [
+        ("motor_rates", "gear ratios times the coupling times rates of the joints", turning),
+        ("motor_torques", "torques of the motors that give the actuator forces", torques),
+    ]
+    if has_motors:
+        taken = times(of_joints, scale_rows("rotor_roots", load("actuated_accelerations")))
+        scaled = scale_columns(product("H", of_joints), "rotor_roots")
+        felt = "coupled rotors in the required force"
+        rows += [
+            (columns, "what the motors do to the platform, by roots of felt inertias", scaled),
+            (
+                "M_rotors",
+                "coupled rotors in the mass matrix",
+                product(columns, transposed(columns)),
+            ),
+            ("Z_rotors", f"{felt} at zero acceleration", times(columns, load("actuated_bias"))),
+            ("required_rotors", felt, times(columns, load("actuated_accelerations"))),
+            ("tau_rotors", "what coupled rotors take of the actuator forces", taken),
+        ]
+    return [Relation(*row, Law.COUPLING) for row in rows]
 
 
 def _matrix(book: Book, coupling: Any) -> None:

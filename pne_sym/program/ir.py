@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.program.public import PublicFunction
+from pne_sym.vector.arrays import Relation
 
 
 class Kind(enum.IntEnum):
@@ -306,6 +307,7 @@ class Program:
         means: what the prepared values are, and those made on the way to them.
         lowered: quantity -> frame and components in which it was made first; of those alone
             that were made as such.
+        relations: equations between whole arrays, of which steps of public functions are made.
     """
 
     prepare: tuple[Block, ...]
@@ -318,3 +320,4 @@ class Program:
     public: tuple[PublicFunction, ...] = ()
     means: Means = field(default_factory=dict)
     lowered: Mapping[str, tuple[str, tuple[Any, ...]]] = field(default_factory=dict)
+    relations: tuple[Relation, ...] = ()

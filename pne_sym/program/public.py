@@ -91,12 +91,14 @@ class Apply:
         operands: arrays of the state.
         numbers: what is fixed at generation: rows, ranks, sizes.
         targets: what it gives.
+        equation: the relation between arrays whose step it is, or "".
     """
 
     operation: str
     operands: tuple[Value, ...]
     targets: tuple[Value, ...]
     numbers: tuple[int, ...] = ()
+    equation: str = ""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.target import Syntax
 from pne_sym.derivation import Derivation, Equation, names_in
 from pne_sym.program.ir import Block, Program
+from pne_sym.program.public import Apply
 from pne_sym.review.plain import plain
 
 _ID = re.compile(r"\s*\(([A-Za-z0-9_-]+)\)")
@@ -92,6 +93,19 @@ def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...
             if equation in (None, own)
         )
         for name, blocks in _places(bundle.program)
+    }
+    return _grouped(in_function)
+
+
+def step_passages(bundle: Bundle, relation: str) -> tuple[Passage, ...]:
+    """Steps of public functions that belong to a relation between arrays."""
+    in_function = {
+        f.name: tuple(
+            f"{step.targets[0].name} = {step.operation}({', '.join(o.name for o in step.operands)})"
+            for step in f.steps
+            if isinstance(step, Apply) and step.equation == relation
+        )
+        for f in bundle.program.public
     }
     return _grouped(in_function)
 

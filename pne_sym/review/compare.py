@@ -206,7 +206,8 @@ def _of_equal_text(found: Comparison, of: _Pair) -> Comparison:
         equations=tuple(
             EquationDifference(e.id, e.name, e.title, owner[e.name], same)
             for e in derivation.equations()
-        ),
+        )
+        + tuple(EquationDifference(r.id, r.id, r.title, "", same) for r in derivation.relations),
         interface=tuple(interface_changes(before, after, defaults, of.alignment)),
         notes=tuple(_notes(before, after, run=of.run)),
     )

@@ -7,6 +7,7 @@ from typing import Any
 
 from pne_sym.derivation import Equation, Frame, Given, ReciprocalBasis, leg_sums
 from pne_sym.review.plain import plain
+from pne_sym.vector.arrays import Relation, written
 
 
 def formula(equation: Equation) -> str:
@@ -17,6 +18,19 @@ def formula(equation: Equation) -> str:
 def joined(name: str, sides: Sequence[Any]) -> str:
     """An equation with all its sides, those of equal text once."""
     return " = ".join((name, *dict.fromkeys(map(plain, sides))))
+
+
+def relation_formula(relation: Relation) -> str:
+    """name = right-hand side, of whole arrays."""
+    return f"{relation.id} = {written(relation.rhs, _NAMES, _FORMS)}"
+
+
+_NAMES = {name: f"diag({name})" for name in ("ratios", "per_turn", "rotor_roots")}
+_FORMS = {
+    **dict.fromkeys(("product", "times", "multiply", "scale_columns"), "{0} {1}"),
+    "transposed": "{0}^T",
+    "solve": "({0})^-1 {1}",
+}
 
 
 def conditions(equation: Equation) -> str:

@@ -24,6 +24,7 @@ from pne_sym.review.equation_text import (
     frame_text,
     given_text,
     joined,
+    relation_formula,
     summed_types,
     text_of,
 )
@@ -83,7 +84,21 @@ class DerivationComparer:
         for equation in self.a.derivation.equations():
             if equation.name in gone:
                 found.append(self._told(equation, Verdict.REMOVED, before=formula(equation)))
+        found += self._relations()
         return (*found, *self._bases(), *(self._outputs() if self.before else ()))
+
+    def _relations(self) -> Iterator[EquationDifference]:
+        """Relations between whole arrays, by their text; functions are compared by value."""
+        old, new = ({r.id: r for r in s.derivation.relations} for s in (self.a, self.b))
+        for id_ in dict.fromkeys((*new, *old)):
+            texts = [relation_formula(of[id_]) if id_ in of else "" for of in (old, new)]
+            verdict = Verdict.CHANGED if all(texts) else Verdict.REMOVED
+            verdict = Verdict.ADDED if not texts[0] else verdict
+            told = (id_, id_, (new.get(id_) or old[id_]).title, "")
+            if texts[0] == texts[1]:
+                yield EquationDifference(*told, Verdict.IDENTICAL)
+            else:
+                yield EquationDifference(*told, verdict, texts[0], texts[1])
 
     # ---- who is who -------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ from pne_sym.derivation import (
     rotations_by_place,
 )
 from pne_sym.review.plain import plain
+from pne_sym.vector.arrays import Relation
 
 
 class UnknownEquationError(ValueError):
@@ -98,9 +99,16 @@ def find_equation(derivation: Derivation, wanted: str) -> Equation:
             f"{', '.join(users[:12]) or 'the outputs'}"
         )
     ids = [key for e in equations for key in (e.id, e.name)]
+    ids += [r.id for r in derivation.relations]
     close = difflib.get_close_matches(wanted[:60], ids, n=4, cutoff=0.4)
     hint = f"; nearest: {', '.join(close)}" if close else ""
     raise UnknownEquationError(f"no equation {wanted[:60]!r}{hint}; without it all are listed")
+
+
+def find_relation(derivation: Derivation, wanted: str) -> Relation | None:
+    """The relation between arrays of an id, which is also the name of what it defines."""
+    found = (r for r in derivation.relations if r.id.lower() == wanted.lower())
+    return next(found, None)
 
 
 def find_equations(derivation: Derivation, wanted: str) -> list[Equation]:

@@ -13,9 +13,17 @@ from pne_sym.backends.target import Syntax, Target
 from pne_sym.derivation import Equation
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.review.code import Passage, passages, program_passages, why_without
-from pne_sym.review.explain import Explanation, Related, explain, find_equations
+from pne_sym.review.code import (
+    Passage,
+    passages,
+    program_passages,
+    step_passages,
+    why_without,
+)
+from pne_sym.review.equation_text import relation_formula
+from pne_sym.review.explain import Explanation, Related, explain, find_equations, find_relation
 from pne_sym.review.plain import plain
+from pne_sym.vector.arrays import Relation
 
 _WIDTH = 98
 
@@ -34,6 +42,10 @@ def contents(bundle: Bundle) -> Iterator[str]:
             formula = f"{equation.name} = {plain(equation.rhs)}"
             yield from _hanging(f"  {equation.id:<{width}}  ", formula)
         yield ""
+    if bundle.derivation.relations:
+        yield "Coupled motors, by arrays of all legs"
+    for relation in bundle.derivation.relations:
+        yield from _hanging(f"  {relation.id}  ", relation_formula(relation))
 
 
 def stage_lines(
@@ -55,6 +67,10 @@ def stage_lines(
         registry.check_stage(stage)
     if wanted is None:
         yield from _whole(bundle, stage)
+        return
+    relation = find_relation(bundle.derivation, wanted)
+    if relation is not None:
+        yield from _relation_lines(bundle, stage, relation)
         return
     for k, equation in enumerate(find_equations(bundle.derivation, wanted)):
         if k:
@@ -81,6 +97,26 @@ def _equation_lines(
     if not found:
         yield from _hanging("", why_without(bundle, equation))
     yield from _passages(found)
+
+
+def _relation_lines(bundle: Bundle, stage: str | None, relation: Relation) -> Iterator[str]:
+    """A relation between arrays: what it says, and the steps of public functions made of it."""
+    if stage in (None, "derivation"):
+        users = [r.id for r in bundle.derivation.relations if relation.id in r.uses]
+        yield f"({relation.id}) {relation.title}"
+        yield ""
+        yield from _hanging("  ", relation_formula(relation))
+        yield ""
+        yield f"  law:   {relation.law}; beyond the paper"
+        yield ""
+        yield f"uses: {', '.join(relation.uses)}"
+        yield f"used by: {', '.join(users) or 'public functions'}"
+    if stage in (None, "program"):
+        yield from [""] * (stage is None)
+        yield from _passages(step_passages(bundle, relation.id))
+    elif stage != "derivation":
+        of = registry.target(stage)
+        yield from _passages(passages(_code(bundle, of), relation.id, _syntax(of)))
 
 
 def _whole(bundle: Bundle, stage: str | None) -> Iterator[str]:

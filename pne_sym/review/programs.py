@@ -34,7 +34,7 @@ def _facts(bundle: Bundle) -> tuple[Any, ...]:
     fields = [replace(f, default=()) for f in table.fields]  # type: ignore[arg-type]
     return (
         d.chapters, d.notation, d.bases, d.givens, d.frames, d.outputs, d.leg_types,
-        replace(d.coordinates, home=((), ())), d.collected, fields, table.branches,
+        replace(d.coordinates, home=((), ())), d.collected, d.relations, fields, table.branches,
         table.relations, bundle.targets,
     )  # fmt: skip
 

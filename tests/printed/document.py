@@ -53,12 +53,14 @@ class Document:
     Attributes:
         sections: by architecture.
         equations, blocks: in order.
+        relations: of whole arrays, in order.
         orders: vector -> its entries in words.
     """
 
     sections: dict[str, Section] = field(default_factory=dict)
     equations: list[Printed] = field(default_factory=list)
     blocks: list[Printed] = field(default_factory=list)
+    relations: list[Printed] = field(default_factory=list)
     orders: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -142,7 +144,9 @@ def _math(cell: str) -> str:
 
 def _formula(made: Document, words: str, formula: str, chapter: str) -> None:
     if match := _ID.match(words):
-        made.equations.append(Printed(match[1], match[2], formula, chapter))
+        of_arrays = match[2].endswith("*Coupling, beyond the paper.*")
+        found = made.relations if of_arrays else made.equations
+        found.append(Printed(match[1], match[2], formula, chapter))
     elif match := re.match(r"\*\*`(\w+)`\.\*\*", words):
         made.blocks.append(Printed(match[1], words, formula, ""))
     elif words.startswith("**Inverse dynamics**"):

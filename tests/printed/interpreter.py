@@ -7,6 +7,7 @@ it is known, all of them are turned into base axes.
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -294,18 +295,35 @@ class Interpreter:
         return found + self._of_rotors(printed.formula.partition(r"\end{bmatrix}")[2])
 
     def _of_rotors(self, text: str) -> Any:
-        """What stands beside the blocks: of coupled motors, by S, r, C and accelerations."""
-        if _COLUMNS not in text or not text.startswith(" + "):
-            return 0.0
-        C, r = np.asarray(self.numbers["coupling"]), self.array("rotor_roots")
-        S = self.array("H") @ C.T @ np.diag(r)
-        if text == rf" + {_COLUMNS}\,{_COLUMNS}^{{\mathsf T}}":
-            return S @ S.T
-        start = rf" + {_COLUMNS}\,\mathrm{{diag}}({_ROOTS})\,{_COUPLING}\,"
-        assert text.startswith(start), text
-        actuators = f"{text.removeprefix(start)} ="
-        (name,) = (b.id for b in self.text.blocks if b.formula.startswith(actuators))
-        return S @ np.diag(r) @ C @ self.array(name)
+        """What stands beside the blocks: of coupled motors."""
+        return self._matrix(text.removeprefix(" + ")) if text.startswith(" + ") else 0.0
+
+    def relation(self, id_: str) -> Any:
+        """A whole array, from its printed product."""
+        (formula,) = (r.formula for r in self.text.relations if r.id == id_)
+        factors = formula.partition(" = ")[2].split(r"\,")
+        return functools.reduce(np.matmul, map(self._matrix, factors))
+
+    def _matrix(self, text: str) -> Any:
+        """An array by its symbol, transposed, inverted or on a diagonal."""
+        if text.endswith("^{-1}"):
+            return np.linalg.inv(self._matrix(text.removesuffix("^{-1}")))
+        if text.endswith(r"^{\mathsf T}"):
+            return self._matrix(text.removesuffix(r"^{\mathsf T}")).T
+        if text.startswith(r"\mathrm{diag}("):
+            return np.diag(self._matrix(text.removeprefix(r"\mathrm{diag}(").removesuffix(")")))
+        if text.startswith("("):
+            return self._matrix(text[1:-1])
+        if text == _COUPLING:
+            return np.asarray(self.numbers["coupling"])
+        places = (self.relation, self.text.relations), (self.array, self.text.blocks)
+        (value,) = (
+            of(found.id)
+            for of, all_ in places
+            for found in all_
+            if found.formula.partition(" =")[0].removesuffix("(X)") == text
+        )
+        return value
 
     def joint_displacements(self) -> Any:
         """q of all joints of all legs."""
@@ -339,7 +357,7 @@ def _cells(formula: str) -> list[list[str]]:
     return [[c.strip() for c in row if c.strip() not in (r"\cdots", "")] for row in rows]
 
 
-_COLUMNS, _ROOTS, _COUPLING = (rf"\boldsymbol{{\mathcal {letter}}}" for letter in "SRK")
+_COUPLING = r"\boldsymbol{\mathcal K}"
 _OF_DRIVES = ("rotor_roots", "actuated_accelerations", "actuated_bias")
 
 

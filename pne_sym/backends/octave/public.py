@@ -51,6 +51,7 @@ class Public(StepText):
     apply = "{targets} = {value};"
     several, known, alone = "[{}]", "0 ./ ~isnan({})", "n"
     first = 1
+    comment = "% {}"
 
     def __init__(self, bundle: Bundle) -> None:
         super().__init__(bundle.program)

@@ -7,7 +7,6 @@ from typing import Any
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report import functions, legs, mechanism, words
 from pne_sym.backends.report.collected import collect
-from pne_sym.backends.report.coupling import is_coupled
 from pne_sym.backends.report.equations import ChapterWriter, index_rows
 from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import escape, inline, table
@@ -35,7 +34,7 @@ def contents(bundle: Bundle) -> dict[str, Any]:
     collected = collect(derivation)
     chapters = ChapterWriter(bundle, collected).chapters()
     used_laws = {e.law for e in derivation.equations()}
-    used_laws |= {Law.COUPLING} if is_coupled(derivation) else set()
+    used_laws |= {Law(r.law) for r in derivation.relations}
     return {
         "name": bundle.name,
         "title": escape(bundle.manipulator.title),

@@ -83,3 +83,4 @@ class Steps(StepText):
         "_steps_{slope}, [{start}{guess}], {halving})"
     )
     closing = "q = s.closed(X, q0)"
+    comment = "# {}"
