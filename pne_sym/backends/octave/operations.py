@@ -21,6 +21,7 @@ class Kernels(KernelText):
         "cross": "cross({0}, {1}, 1)",
         "concat": "cat(1, {operands})",
         "outer": "reshape({0}, [size({0}, 1), 1, size({0}, 2)]) .* reshape({1}, [1, size({1})])",
+        "times": "{f}matrix_times({operands})",
         "eye": "((1:size({0}, 1))' == 1:size({0}, 1))",
         "length": "size({0}, 1)",
         "transposed": "permute({0}, [2, 1, 3])",

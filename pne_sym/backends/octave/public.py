@@ -12,6 +12,8 @@ from pne_sym.program.public import Argument, Default, PublicFunction
 
 EXPRESSIONS = {
     **dict.fromkeys(("multiply", "scale"), "{0} .* {1}"),
+    "dot": "sum({0} .* {1}, 1)",
+    "times": "{f}matrix_times({0}, {1})",
     "entry": "{0}({numbers}, :)",
     "extend": "[{0}; zeros({rest}, n)]",
     "take": "{0}({numbers}, :, :)",

@@ -58,6 +58,7 @@ class Steps(StepText):
         "take_columns": "s.transposed(s.take(s.transposed({0}), {numbers}))",
         "unlimited": "s.add_at({0}, s.filled(s.xp.inf, ({count},)), {numbers})",
         "not_negative": "s.xp.astype(s.xp.all({0} >= 0.0, axis=0), s.dtype)",
+        "dot": "s.xp.sum({0} * {1}, axis=0)",
         "inverse_root": "1.0 / s.nonzero(s.sqrt({0}))",
         "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
         "join": "s.xp.concat(({0}, {1}))",
