@@ -38,10 +38,10 @@ class Structure:
 def a_leg(architecture: str) -> str:
     """A leg by its architecture, whose letters are spelled.
 
-    >>> a_leg("UPS"), a_leg("RRR"), a_leg("SPS")
-    ('a UPS leg', 'an RRR leg', 'an SPS leg')
+    >>> a_leg("UPS"), a_leg("_RRR"), a_leg("SPS")
+    ('a UPS leg', 'an _RRR leg', 'an SPS leg')
     """
-    return f"a{'n' * (architecture[:1] in 'FHLMNRSX')} {architecture} leg"
+    return f"a{'n' * (architecture.lstrip('_')[:1] in 'FHLMNRSX')} {architecture} leg"
 
 
 def named_structures(

@@ -450,3 +450,12 @@ def test_printer_takes_no_leg_index_by_default() -> None:
     assert (
         LatexPrinter({"x": "x"}, {"x": "a"}, {"a": "i"}).doprint(sp.Symbol("x", real=True)) == "x"
     )
+
+
+def test_legs_are_spelled_with_their_article() -> None:
+    """Also where the first joint is the actuated one, and where a sentence begins."""
+    for name in ("planar_3rpr", "delta"):
+        text = document(name)
+        assert not re.search(r"\b[Aa] (<ins>)?[FHLMNRSX]", text), name
+        assert "An R<ins>P" in text or "An <ins>R" in text
+        assert "(h is" not in text  # no column h in the formula

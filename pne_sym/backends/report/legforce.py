@@ -27,12 +27,8 @@ def leg_force_statements(
     actuators = tuple(_applied(derivation, leg_type, printer, 0))
     constrained = _outputs(derivation, leg_type, "constraint_direction", 0)
     others = " and the constraints" if constrained else ""
-    along = ", ".join(
-        inline(printer.doprint(o.value)) for o in _outputs(derivation, leg_type, "actuator", 0)
-    )
-    columns = f" (h is {along})" if along else ""
     yield Statement(
-        f"**The leg's force on the platform, Eq. 3.** What the actuators{others} give{columns}, "
+        f"**The leg's force on the platform, Eq. 3.** What the actuators{others} give, "
         "and a rest that inverse dynamics evaluates as a number, accelerations included:",
         display(_FORCE, [(*actuators, *printer.terms(force))]),
     )

@@ -15,6 +15,7 @@ from pne_sym.backends.report.markdown import inline
 from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import Statement
 from pne_sym.derivation import Derivation, LegTypeInfo, Role
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import Cross
 from pne_sym.vector.nodes import VectorScale
 
@@ -28,7 +29,7 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
         lines = closed_force(derivation, collected, info.name, printer)
         if lines:
             yield Statement(
-                f"A {leg_title(info)} leg acts on the platform with the force (Eq. 4; [derivation]"
+                f"{_a_leg(info)} acts on the platform with the force (Eq. 4; [derivation]"
                 f"(#chapter-{info.name}-N))",
                 lines,
             )
@@ -62,6 +63,12 @@ def overview(bundle: Bundle, collected: Collected, printer: LatexPrinter) -> Ite
             f"with the platform ([derivation](#chapter-{chapter.id})):",
             (r"\begin{aligned}", *rows, r"\end{aligned}"),
         )
+
+
+def _a_leg(info: LegTypeInfo) -> str:
+    """A leg of a type, where a sentence begins."""
+    spelled = a_leg(info.title).replace(info.title, leg_title(info))
+    return f"A{spelled[1:]}"
 
 
 def _meaning(derivation: Derivation, info: LegTypeInfo, printer: LatexPrinter) -> str:
