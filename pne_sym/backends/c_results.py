@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from pne_sym.backends.c_arrays import Arrays
 from pne_sym.backends.c_text import indented, statement
-from pne_sym.program.public import Run, Value
+from pne_sym.program.public import Run, Step, Value
 
 
 class Results:
@@ -15,9 +15,10 @@ class Results:
     Args:
         arrays: of the function.
         used: names of values that steps read, or that users get.
+        steps: those that stand in the function itself, not in one that it calls.
     """
 
-    def __init__(self, arrays: Arrays, used: Collection[str]) -> None:
+    def __init__(self, arrays: Arrays, used: Collection[str], steps: Iterable[Step]) -> None:
         self.arrays = arrays
         f, at = arrays.f, arrays.at
         self.outputs = [o for o in f.outputs if o.value.size]
@@ -25,7 +26,7 @@ class Results:
         self.judged = [] if f.unbounded else [o.value for o in self.outputs]
         self.moved = [o.value for o in self.outputs if at[o.name] != self.wanted[o.name]]
         # where arrays that runs give and nothing uses overflow, the state is none either
-        runs = [step for step in f.steps if isinstance(step, Run)] * (not f.unbounded)
+        runs = [step for step in steps if isinstance(step, Run)] * (not f.unbounded)
         self.unused = [t for r in runs for t in r.targets if t.size and t.name not in used]
 
     def lines(self) -> list[str]:

@@ -79,7 +79,7 @@ class Steps:
         cited = Citations(self.bundle.program, "/* {} */")
         for step in self.steps:
             lines += cited.lines(step, self._step(step))
-        lines += [*cited.end(), *Results(self.arrays, self.used).lines()]
+        lines += [*cited.end(), *Results(self.arrays, self.used, self.steps).lines()]
         buffers = [*self.arrays.buffers, *self.solves.buffer()]
         aligned = "ALIGNED " * self.lanes
         head = self.arrays.tables + (listing(f"{aligned}real ", buffers, ";") if buffers else [])
