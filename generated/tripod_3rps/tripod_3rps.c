@@ -61,7 +61,7 @@ enum {
 #define FIT(n, turns) ((n)%(turns) == 0 && LONGEST >= (turns)*sizeof(real))
 #define AT_ONCE(n) (FIT(n, 8) ? 8 : FIT(n, 4) ? 4 : FIT(n, 2) ? 2 : 1)
 #define PRAGMA(text) _Pragma(#text)
-#define CLANG(text) PRAGMA(clang loop interleave(disable) text)
+#define CLANG(text) PRAGMA(clang loop interleave(disable) text)  /* NOLINT(bugprone-macro-parentheses): words */
 #define IN_VECTORS(n) CLANG(vectorize_width(AT_ONCE(n)))
 #define SHORT_IN_VECTORS CLANG(vectorize_width(AT_ONCE(LANES)) unroll(disable))
 #define WIDE , min_vector_width(8*LONGEST)
@@ -276,9 +276,9 @@ INLINE void check_three(size_t m, const real *a, size_t n, const real *b, size_t
 /* Add up the entries of every state. */
 INLINE void add_up(size_t size, const real *restrict x, real *restrict total)
 {
-    IN_VECTORS(LANES)
-    for (size_t k = 0; k < LANES; ++k) {
-        for (size_t e = 0; e < size; ++e) {
+    for (size_t e = 0; e < size; ++e) {
+        SHORT_IN_VECTORS
+        for (size_t k = 0; k < LANES; ++k) {
             total[k] += x[e*LANES + k];
         }
     }
