@@ -392,11 +392,12 @@ INLINE int finished(size_t size, const real *x, real *out, status_flags *t)
     return final_status(t, size, out);
 }
 
-/* Outputs of states side by side, state by state: what is written stands in one piece then. */
+/* Outputs of states side by side, state by state. */
 INLINE void copy_side_by_side(size_t size, const real *x, real *out)
 {
-    for (size_t k = 0; k < LANES; ++k) {
-        for (size_t e = 0; e < size; ++e) {
+    IN_VECTORS(LANES)
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
         }
     }

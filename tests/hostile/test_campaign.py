@@ -78,8 +78,8 @@ def test_hostile_states_break_no_promise(which: str, build: str, tmp_path: Path)
     assert all(line.status[0] == line.values[0] == 0 for line in lines), "single and batch differ"
 
 
-DELIVER = """for (size_t k = 0; k < LANES; ++k) {
-        for (size_t e = 0; e < size; ++e) {
+DELIVER = """for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < LANES; ++k) {
             out[size*k + e] = x[e*LANES + k];
 """
 FLAGS = "    status_flags why;\n"
