@@ -157,7 +157,7 @@ class FunctionWriter:
         rows = len(block.stores) + len(self.parts.flag_rows(block))
         buffers = [f"o_{leg}[{times(rows, width)}]{start}"] if rows else []
         if block.sums:
-            every = {str(target) for target, _ in block.sums}.issuperset(sums)
+            every = {str(s.target) for s in block.sums}.issuperset(sums)
             terms = f"terms_{leg}[{times(self.sums, width)}]"
             buffers.insert(0, terms + (start if every else " = {0}"))
         return buffers

@@ -9,9 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import Any
-
-import sympy as sp
 
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import STATUSES, Parts
@@ -28,8 +25,8 @@ from pne_sym.backends.c_statements import (
 )
 from pne_sym.backends.c_text import Routine, statement
 from pne_sym.backends.describe import equation_titles
-from pne_sym.program.ir import Block
-from pne_sym.program.slices import read_in, symbols
+from pne_sym.program.ir import Assignment, Block, Check, Store
+from pne_sym.program.slices import read_by, symbols
 
 _LEAST = 3  # lines that are worth a routine
 
@@ -124,23 +121,17 @@ class LegParts:
     def pieces(self, loads: dict[str, str] | None = None) -> Iterator[Piece]:
         """What it adds to sums, its entries, their sum, and its flags; loads: of what they read."""
         loads = {} if loads is None else loads
-        sums = tuple(zip(self.block.sums, self.block.sum_equations, strict=True))
         for first, last in self._runs(self.block.sums):
-            at = [self.p.sums.index(str(target)) for (target, _), _ in sums[first:last]]
-            terms = [
-                (f"{n - min(at)}", value, equation, str(target))
-                for n, ((target, value), equation) in zip(at, sums[first:last], strict=True)
-            ]
-            here = [(f"{n}", *rest) for n, (_, *rest) in zip(at, terms, strict=True)]
-            yield self._piece(
-                "sums", _added(here, self.here, loads), _added(terms, self.apart, {}),
-                [value for _, value, *_ in terms], ("terms", min(at)),
-            )  # fmt: skip
+            sums = self.block.sums[first:last]
+            at = [self.p.sums.index(str(s.target)) for s in sums]
+            here = _added(sums, at, self.here, loads)
+            apart = _added(sums, [n - min(at) for n in at], self.apart, {})
+            yield self._piece("sums", here, apart, sums, ("terms", min(at)))
         for first, last in self._runs(self.block.stores):
-            given = [(s.value, s.equation) for s in self.block.stores[first:last]]
-            here = _stored(given, first, self.here, loads)
-            apart = _stored(given, 0, self.apart, {})
-            yield self._piece("entries", here, apart, [v for v, _ in given], ("o", first))
+            stores = self.block.stores[first:last]
+            here = _stored(stores, first, self.here, loads)
+            apart = _stored(stores, 0, self.apart, {})
+            yield self._piece("entries", here, apart, stores, ("o", first))
         for flag, n in self.p.flag_rows(self.block).items():
             yield self._flag(flag, n, loads)
 
@@ -160,15 +151,18 @@ class LegParts:
         checks = [c for c in self.block.checks if c.status == flag]
         here = [("", self.p.flags(checks, target, loads, self.here))]
         apart = [("", self.p.flags(checks, "o[k] =", {}, self.apart))]
-        return self._piece(
-            flag, here, apart, [e for c in checks for e in (c.value, c.scale)], ("o", n)
-        )
+        return self._piece(flag, here, apart, checks, ("o", n))
 
     def _piece(
-        self, name: str, here: Rows, apart: Rows, values: Iterable[Any], at: tuple[str, int]
+        self,
+        name: str,
+        here: Rows,
+        apart: Rows,
+        items: Iterable[Assignment | Check | Store],
+        at: tuple[str, int],
     ) -> Piece:
         """Lines, and the routine of the same where they read what stages leave alone."""
-        read = set[str]().union(*(read_in(sp.sympify(v)) for v in values))
+        read = read_by(items)
         body = headed(apart, equation_titles(self.bundle.derivation))
         if not read <= self.members | self.prepared.keys() or len(body) < _LEAST:
             return Piece(here)
@@ -187,32 +181,20 @@ class LegParts:
 
 
 def _added(
-    terms: Iterable[tuple[str, Any, str, str]], shared: Shared, loads: dict[str, str]
+    sums: Iterable[Assignment], at: Iterable[int], shared: Shared, loads: dict[str, str]
 ) -> Rows:
-    """What a leg adds to sums: places, values, equations, names of the sums."""
-    return [
-        (
-            equation,
-            [
-                *loaded(loads, value),
-                f"gather(&terms[{n}*count + k], add, {shared.text(value)});  /* {target} */",
-            ],
-        )
-        for n, value, equation, target in terms
-    ]
+    """What a leg adds to sums at these places."""
+    rows = []
+    for n, s in zip(at, sums, strict=True):
+        text = f"gather(&terms[{n}*count + k], add, {shared.text(s.expr)});  /* {s.target} */"
+        rows.append((s.equation, [*loaded(loads, s.expr), text]))
+    return rows
 
 
-def _stored(
-    given: Iterable[tuple[Any, str]], first: int, shared: Shared, loads: dict[str, str]
-) -> Rows:
-    """Entries that a leg gives, with their equations, from a place on."""
-    return [
-        (
-            equation,
-            [
-                *loaded(loads, value),
-                *statement(f"o[{n}*count + k] = {shared.text(value)}"),
-            ],
-        )
-        for n, (value, equation) in enumerate(given, first)
-    ]
+def _stored(stores: Iterable[Store], first: int, shared: Shared, loads: dict[str, str]) -> Rows:
+    """Entries that a leg gives, from a place on."""
+    rows = []
+    for n, s in enumerate(stores, first):
+        text = statement(f"o[{n}*count + k] = {shared.text(s.value)}")
+        rows.append((s.equation, [*loaded(loads, s.value), *text]))
+    return rows

@@ -90,7 +90,7 @@ class _Preparation:
         """Statements that compute the prepared model from the parameters."""
         lines: list[str] = []
         blocks = common_sums(self.bundle.program.prepare)
-        totals = [str(target) for block in blocks for target, _ in block.sums]
+        totals = [str(s.target) for block in blocks for s in block.sums]
         lines += [f"real {c_name(n)} = 0;" for n in dict.fromkeys(totals)]
         shared = set().union(*(symbols(b) for b in blocks)) if blocks else set()
         lines += self._parameters(shared, None)
@@ -112,10 +112,10 @@ class _Preparation:
             inner.append(self._kept("KEEP_OF_LEG", f"model->{c_name(store.array)}[leg]", store))
         count, legs = self.bundle.leg_counts[leg], count_of(leg)
         filled = capacity(count) > count
-        for target, value in block.sums:
-            term = self.printer.text(value)
+        for s in block.sums:
+            term = self.printer.text(s.expr)
             inner += statement(
-                f"{c_name(str(target))} += {f'leg < {legs} ? {term} : 0' if filled else term}"
+                f"{c_name(str(s.target))} += {f'leg < {legs} ? {term} : 0' if filled else term}"
             )
         if "own" in words_of(inner):
             own = f"leg < {legs} ? leg : 0" if filled else "leg"

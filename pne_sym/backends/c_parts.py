@@ -35,7 +35,7 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
-from pne_sym.program.slices import is_full, places_of, read_in, slices
+from pne_sym.program.slices import is_full, places_of, read_by, slices
 
 STATUSES = ("unreachable", "singular")
 
@@ -106,9 +106,7 @@ class Parts:
 
     def _read_at_once(self) -> set[str]:
         """Names that checks and entries before the legs read."""
-        read = [e for c in self.first_checks for e in (c.value, c.scale)]
-        read += [s.value for s in (self.first.stores if self.first else ())]
-        return set[str]().union(*(read_in(sp.sympify(e)) for e in read))
+        return read_by((*self.first_checks, *(self.first.stores if self.first else ())))
 
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""
@@ -157,7 +155,7 @@ class Parts:
 
     def summed_up(self, block: Block, shared: Shared) -> str:
         """The sum of the different values that a block stores."""
-        values = [sp.sympify(s.value) for s in block.stores]
+        values = [s.value for s in block.stores]
         different = dict.fromkeys(-v if v.could_extract_minus_sign() else v for v in values)
         return in_pairs([shared.text(v) for v in different if not v.is_Number] or ["0"])
 
@@ -208,6 +206,6 @@ def _least(check: Check, shared: Shared) -> str:
 def least_values(bundle: Bundle) -> dict[str, str]:
     """What values must be larger than, where that is known: text -> name, the same everywhere."""
     checks = [c for f in bundle.program.functions.values() for b in f.blocks for c in b.checks]
-    fixed = [c for c in checks if c.status == "singular" and sp.sympify(c.scale).is_Number]
+    fixed = [c for c in checks if c.status == "singular" and c.scale.is_Number]
     texts = dict.fromkeys(_least(check, Shared()) for check in fixed)
     return {text: f"LEAST_{k}" for k, text in enumerate(texts, 1)}

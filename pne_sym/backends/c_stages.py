@@ -12,12 +12,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import sympy as sp
-
 from pne_sym.backends.c_text import PRINTER, c_name
 from pne_sym.backends.waiting import WaitingPrinter, ready, ready_after
 from pne_sym.program.ir import Assignment, Function
-from pne_sym.program.slices import Slices, read_in, slices, symbols
+from pne_sym.program.slices import Slices, read_by, read_in, slices, symbols
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _MANY = 3  # functions that need not want all of a stage
@@ -237,9 +235,9 @@ class Stages:
         """The same for what a function makes, the sums over its legs and what follows these."""
         own, known = self.parts[function], self._known(self.made[function].items())
         for block in own.legs:
-            for target, value in block.sums:
-                wait = ready(sp.sympify(value), known)
-                known[target.name] = max(known.get(target.name, 0), wait)
+            for s in block.sums:
+                wait = ready(s.expr, known)
+                known[s.target.name] = max(known.get(s.target.name, 0), wait)
         return ready_after(own.after.assignments if own.after else (), known)
 
     def used(self, function: str, part: str) -> list[Stage]:
@@ -350,12 +348,5 @@ def _parts(own: Slices) -> list[tuple[str, tuple[Assignment, ...]]]:
 
 def _ends(own: Slices) -> set[str]:
     """Names that are read by others than assignments, or behind the legs."""
-    checks = [e for c in own.function.unpack_checks for e in (c.value, c.scale)]
-    found = {s.name for e in checks for s in sp.sympify(e).free_symbols}
-    for block in (own.before, *own.legs):
-        if block:
-            read = [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
-            read += [sp.sympify(s.value) for s in block.stores]
-            read += [sp.sympify(v) for _, v in block.sums]
-            found |= {s.name for e in read for s in e.free_symbols}
-    return found | symbols(own.after)
+    ends = (end for block in (own.before, *own.legs) if block for end in block.ends)
+    return read_by((*own.function.unpack_checks, *ends)) | symbols(own.after)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-import sympy as sp
-
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_stages import Shared, aliases
 from pne_sym.backends.c_text import WIDTH, c_name, comment, statement, table
@@ -68,7 +66,7 @@ def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:
     """Loads of what expressions read and is not yet at hand."""
     if not loads:
         return []
-    read = loads.keys() & set[str]().union(*(read_in(sp.sympify(e)) for e in expressions))
+    read = loads.keys() & set[str]().union(*(read_in(e) for e in expressions))
     return [f"const real {c_name(n)} = {loads.pop(n)};" for n in sorted(read)]
 
 

@@ -6,7 +6,7 @@ So a leg type more adds its text and leaves that of the others, and of what is m
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,8 +23,9 @@ def with_common_sums(function: Function) -> Function:
 
 def common_sums(blocks: Sequence[Block]) -> tuple[Block, ...]:
     """Blocks in which leg types add to common sums."""
-    of = {t: block.leg_type for block in blocks for t, _ in block.sums}
-    read = Counter(name for e in _expressions(blocks) for name in read_in(e))
+    of = {s.target: block.leg_type for block in blocks for s in block.sums}
+    items = [item for block in blocks for item in (*block.assignments, *block.ends)]
+    read = Counter(name for item in items for e in item.read for name in read_in(e))
     alone = {t: leg for t, leg in of.items() if read[t.name] == 1}
     made = {a.target.name for block in blocks for a in block.assignments}
     common: dict[sp.Symbol, sp.Symbol] = {}
@@ -44,7 +45,9 @@ def common_sums(blocks: Sequence[Block]) -> tuple[Block, ...]:
         kept.append(tuple(assignments))
     return tuple(
         replace(
-            block, assignments=own, sums=tuple((common.get(t, t), value) for t, value in block.sums)
+            block,
+            assignments=own,
+            sums=tuple(replace(s, target=common.get(s.target, s.target)) for s in block.sums),
         )
         for block, own in zip(blocks, kept, strict=True)
     )
@@ -59,14 +62,3 @@ def _parts(expr: Any, alone: dict[sp.Symbol, str]) -> tuple[list[sp.Symbol], lis
         if parts and len({alone[p] for p in parts}) == len(parts):
             return parts, [t for t in terms if sign * t not in parts], sign
     return [], [], 1
-
-
-def _expressions(blocks: Iterable[Block]) -> list[Any]:
-    """All that a function computes, stores and checks."""
-    found: list[Any] = []
-    for block in blocks:
-        found += [a.expr for a in block.assignments]
-        found += [v for _, v in block.sums]
-        found += [store.value for store in block.stores]
-        found += [e for c in block.checks for e in (c.value, c.scale)]
-    return [sp.sympify(e) for e in found]

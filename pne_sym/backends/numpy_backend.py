@@ -160,9 +160,9 @@ def _prepare(bundle: Bundle, functions: Sequence[FunctionText]) -> str:
     lines += _parameters_read(bundle)
     for block in program.prepare:
         lines += text.statements(block.assignments)
-        for target, value in block.sums:
+        for s in block.sums:
             legs = f"_{block.leg_type}"
-            lines.append(f"{target} = np.sum(np.broadcast_to({text.of(value)}, {legs}))")
+            lines.append(f"{s.target} = np.sum(np.broadcast_to({text.of(s.expr)}, {legs}))")
     listed = [line for function in functions for line in function.constants()]
     lines += ["return {", *(f"    {line}" for line in listed), "}"]
     return textwrap.indent("\n".join(lines), "    ")

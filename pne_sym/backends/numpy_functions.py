@@ -127,14 +127,14 @@ class FunctionText:
             lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
         lines += text.statements(block.assignments) + self._required(block.checks)
         rows = []
-        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
-            rows.append((equation, text.assign(str(target), self._of(value), "+=")))
+        for s in block.sums:
+            rows.append((s.equation, text.assign(str(s.target), self._of(s.expr), "+=")))
         for store in block.stores:
             table = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
             target = f"out_{store.array}[{self.places.named(store.array, leg, table)}[leg]]"
             rows.append((store.equation, text.assign(target, self._of(store.value))))
         lines += text.headed(rows)
-        sums = [str(target) for target, _ in block.sums]
+        sums = [str(s.target) for s in block.sums]
         return [
             *self.outside.names(sums, f"[0.0] * {len(sums)}"),
             f"for leg, k in legs[{number}]:",

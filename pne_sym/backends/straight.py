@@ -156,10 +156,10 @@ class StraightText:
     def _block(self, block: Block) -> list[str]:
         lines = self.statements(block.assignments) + self._required(block.checks)
         rows = []
-        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
+        for s in block.sums:
             legs = self.bundle.leg_counts[block.leg_type]
-            total = self.forms.total.format(value=self.of(value), legs=legs)
-            rows.append((equation, self.assign(self.of(target), total)))
+            total = self.forms.total.format(value=self.of(s.expr), legs=legs)
+            rows.append((s.equation, self.assign(self.of(s.target), total)))
         return lines + self.headed(rows)
 
     def _required(self, checks: Iterable[Check]) -> list[str]:

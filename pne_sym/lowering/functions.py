@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections import ChainMap
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
-
-import sympy as sp
 
 from pne_sym.derivation import Derivation
 from pne_sym.lowering.algebra import symbols
@@ -16,7 +15,7 @@ from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.shapes import shapes
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed, still_used
-from pne_sym.lowering.statements import Guard, Statement
+from pne_sym.lowering.statements import End, Statement, read_by, rewritten
 from pne_sym.program.ir import (
     VECTORS,
     Assignment,
@@ -34,19 +33,17 @@ from pne_sym.program.ir import (
 class Slice:
     """The statements that a function needs."""
 
-    def __init__(
-        self, name: str, arrays: tuple[str, ...], stores: list[tuple[Stage, Store]]
-    ) -> None:
+    def __init__(self, name: str, arrays: tuple[str, ...], stores: list[Store]) -> None:
         self.name = name
         self.arrays = arrays
         self.stores = stores
-        self.guards: list[Guard] | None = None  # None: those of the equations that are needed
+        self.guards: list[Check] | None = None  # None: those of the equations that are needed
 
-    def roots(self, builder: Builder) -> tuple[set[Any], list[Guard]]:
+    def roots(self, builder: Builder) -> tuple[set[Any], list[Check]]:
         """Symbols whose values are wanted, and the guards that concern these and what they need."""
-        wanted = set().union(*(symbols(sp.sympify(store.value)) for _, store in self.stores))
+        wanted = read_by(self.stores)
         made = builder.needed(wanted)
-        needed = wanted.union(*(symbols(s.expr) for s in made))
+        needed = wanted | read_by(made)
         equations = {s.equation for s in made if s.stage.depends_on_state}
         guards = self.guards or [
             g for g in builder.guards if g.equation in equations and symbols(g.value) <= needed
@@ -56,20 +53,13 @@ class Slice:
 
 @dataclass
 class _Sliced:
-    """A slice with its statements, and the symbols that it uses."""
+    """A slice with its statements, what becomes of them, and the symbols that it uses."""
 
     part: Slice
     run: list[Statement]
-    guards: list[Any]
+    ends: list[End]
     used: set[Any]
     constants: set[Any]
-
-    @property
-    def uses(self) -> list[tuple[Any, str]]:
-        """Expressions with their equations, where they say something of what they use."""
-        found = [(s.expr, s.equation) for s in self.run]
-        found += [(store.value, store.equation) for _, store in self.part.stores]
-        return found + [(e, g.equation) for g in self.guards for e in (g.value, g.scale)]
 
 
 def program_of(
@@ -79,22 +69,17 @@ def program_of(
     leg_types = [t.name for t in derivation.leg_types]
     run, sliced = _sliced(builder, slices, meaning)
     constants = set().union(*(s.constants for s in sliced))
-    stores = [
-        (builder.stage_of(s), Store(s.name, s, 0)) for s in sorted(constants, key=lambda s: s.name)
-    ]
-    statements = inline_single_use(builder.needed(constants), stores, [])
+    stores = [Store("", s, 0, stage=builder.stage_of(s)) for s in constants]
+    statements = inline_single_use(builder.needed(constants), stores)
     outside = set(builder.given_names())
-    statements = meaning.told(statements, [use for s in sliced for use in s.uses])
+    statements = meaning.told(statements, [use for s in sliced for use in (*s.run, *s.ends)])
     ids = {s.target: s.equation for s in statements}
     names = numbered(statements, outside, meaning.stem)
     means = meaning.by_name(statements, names)
-    stores = [(at, replace(s, equation=ids.get(s.value, ""))) for at, s in stores]
-    statements, stores, _ = renamed(names, statements, stores, [])
-    stores = sorted(
-        ((at, replace(s, array=s.value.name)) for at, s in stores), key=lambda item: item[1].array
-    )
-    prepare = _blocks(statements, stores, [], leg_types, parameters=True)
-    listed = tuple((store.array, at.leg_type) for at, store in stores)
+    stores = [rewritten(replace(s, equation=ids.get(s.value, "")), names) for s in stores]
+    stores = sorted((replace(s, array=s.value.name) for s in stores), key=lambda s: s.array)
+    prepare = _blocks(renamed(names, statements), stores, leg_types, parameters=True)
+    listed = tuple((store.array, store.stage.leg_type) for store in stores)
     reserved = outside | {name for name, _ in listed} | _input_names(derivation)
     names |= numbered(run, reserved, lambda s, made: meaning.stem(s, ChainMap(made, names)))
     functions = {s.part.name: _function(derivation, builder, s, names, meaning) for s in sliced}
@@ -121,28 +106,19 @@ def _sliced(
     """
     guarded = [part.roots(builder) for part in parts]
     wanted = set[Any]().union(*(roots for roots, _ in guarded))
-    stores = list(dict.fromkeys(store for part in parts for store in part.stores))
-    guards = list(dict.fromkeys(g for _, found in guarded for g in found))
+    ends: list[list[End]] = [
+        [*part.stores, *guards] for part, (_, guards) in zip(parts, guarded, strict=True)
+    ]
     run = [s for s in builder.needed(wanted) if s.stage.depends_on_state]
-    run = inline_single_use(run, stores, guards)
-    uses = [(store.value, store.equation) for _, store in stores]
-    run = meaning.told(run, uses + [(e, g.equation) for g in guards for e in (g.value, g.scale)])
+    every = list(dict.fromkeys(end for own in ends for end in own))
+    run = meaning.told(inline_single_use(run, every), every)
     found = []
-    for part, (_, own) in zip(parts, guarded, strict=True):
-        needed = still_used(run, part.stores, own)
-        used = _used(needed, part.stores, own)
+    for part, own in zip(parts, ends, strict=True):
+        needed = still_used(run, own)
+        used = read_by((*needed, *own))
         constants = {s for s in used if not builder.stage_of(s).depends_on_state}
         found.append(_Sliced(part, needed, own, used, constants))
     return run, found
-
-
-def _used(
-    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
-) -> set[Any]:
-    expressions = [s.expr for s in statements]
-    expressions += [sp.sympify(store.value) for _, store in stores]
-    expressions += [e for g in guards for e in (g.value, g.scale)]
-    return {symbol for e in expressions for symbol in symbols(e)}
 
 
 def _function(
@@ -155,7 +131,7 @@ def _function(
     vectors, assignments, checks = _unpacked(derivation, sliced)
     per_leg = _read_per_leg(derivation, builder, sliced)
     vectors |= {entry.vector for read in per_leg.values() for entry in read}
-    run, stores, guards = renamed(names, sliced.run, sliced.part.stores, sliced.guards)
+    run, ends = renamed(names, sliced.run), [rewritten(end, names) for end in sliced.ends]
     constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     leg_types = [t.name for t in derivation.leg_types]
     return Function(
@@ -164,7 +140,7 @@ def _function(
         sliced.part.arrays,
         tuple(assignments),
         tuple(checks),
-        _blocks(run, stores, guards, leg_types),
+        _blocks(run, ends, leg_types),
         {t: tuple(found) for t, found in per_leg.items()},
         tuple(sorted(n for n, leg in constants.items() if not leg)),
         {t: tuple(sorted(n for n, leg in constants.items() if leg == t)) for t in leg_types},
@@ -223,8 +199,7 @@ def _closure_of(assignments: list[Assignment], wanted: set[Any]) -> set[Any]:
 
 def _blocks(
     statements: list[Statement],
-    stores: list[tuple[Stage, Store]],
-    guards: list[Any],
+    ends: Sequence[End],
     leg_types: list[str],
     *,
     parameters: bool = False,
@@ -239,18 +214,14 @@ def _blocks(
     for stage in stages:
         own = [s for s in statements if s.stage == stage and not s.total_of]
         totals = [s for s in statements if s.total_of and s.total_of == stage.leg_type]
+        here = [end for end in ends if end.stage == stage]
         blocks.append(
             Block(
                 stage.leg_type,
                 tuple(Assignment(s.target, s.expr, s.equation) for s in own),
-                tuple(
-                    Check(g.status, g.value, g.scale, g.power, g.equation)
-                    for g in guards
-                    if g.stage == stage
-                ),
-                tuple((s.target, s.expr) for s in totals),
-                tuple(store for at, store in stores if at == stage),
-                tuple(s.equation for s in totals),
+                tuple(end for end in here if isinstance(end, Check)),
+                tuple(Assignment(s.target, s.expr, s.equation) for s in totals),
+                tuple(end for end in here if isinstance(end, Store)),
             )
         )
-    return tuple(b for b in blocks if b.assignments or b.stores or b.sums or b.checks)
+    return tuple(b for b in blocks if b.assignments or b.ends)

@@ -10,8 +10,8 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.statements import Atom, Guard
-from pne_sym.program.ir import Kind, Stage, Store
+from pne_sym.lowering.statements import Atom
+from pne_sym.program.ir import Check, Kind, Stage, Store
 
 _NOTHING_TESTED = sp.S.One
 OWN_NAMES = frozenset({"pivot_size", "pivot", "pivot_root", "least_pivots", "least_reach"})
@@ -29,11 +29,11 @@ class Margins:
         stores: the entries.
     """
 
-    def __init__(self, derivation: Derivation, b: Builder, guards: Sequence[Guard]) -> None:
+    def __init__(self, derivation: Derivation, b: Builder, guards: Sequence[Check]) -> None:
         self.b = b
         leg_type = {e.id: c.leg_type for c in derivation.chapters for e in c.equations}
-        self.guards: list[Guard] = []
-        self.stores: list[tuple[Stage, Store]] = []
+        self.guards: list[Check] = []
+        self.stores: list[Store] = []
         for info in derivation.leg_types:
             stage = Stage(Kind.STATE_LEG, info.name)
             own = [replace(g, stage=stage) for g in guards if leg_type[g.equation] == info.name]
@@ -44,7 +44,7 @@ class Margins:
             if reached:
                 self._put("reach", stage, [g.value for g in reached], info.indices)
 
-    def _pivot(self, guard: Guard) -> Atom:
+    def _pivot(self, guard: Check) -> Atom:
         """The tested value over its scale: a ratio of lengths, not of their squares."""
         self.b.equation = guard.equation
         size = self.b.let(sp.Abs(guard.value), "pivot_size")
@@ -57,4 +57,4 @@ class Margins:
             if values
             else _NOTHING_TESTED
         )
-        self.stores.append((stage, Store(array, least, legs, equation=self.b.equation)))
+        self.stores.append(Store(array, least, legs, equation=self.b.equation, stage=stage))

@@ -17,7 +17,7 @@ from pne_sym.derivation import Derivation, Law
 from pne_sym.lowering import algebra
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.margins import OWN_NAMES
-from pne_sym.lowering.statements import Statement, of_leg
+from pne_sym.lowering.statements import End, Statement, of_leg
 from pne_sym.program.ir import Component, Kind
 
 Signed = tuple[int, Component]
@@ -137,7 +137,7 @@ class Meaning:
     # ---- equations -----------------------------------------------------------------------
 
     def told(
-        self, statements: Iterable[Statement], uses: Iterable[tuple[Any, str]]
+        self, statements: Iterable[Statement], uses: Iterable[Statement | End]
     ) -> list[Statement]:
         """The statements with their equations, and the names of what they are as hints.
 
@@ -147,11 +147,12 @@ class Meaning:
 
         Args:
             statements: in an order of computation.
-            uses: expressions that use them, with their equations.
+            uses: what else uses them.
         """
         needed: dict[Any, str] = {}
-        for expr, equation in uses:
-            self._note(needed, expr, equation)
+        for use in uses:
+            for expr in use.read:
+                self._note(needed, expr, use.equation)
         found: list[Statement] = []
         for s in reversed(tuple(statements)):
             need = needed.get(s.target, s.equation)
@@ -198,7 +199,7 @@ class Meaning:
         return constant and statement.stage.kind is Kind.STATE_LEG
 
     def _note(self, needed: dict[Any, str], expr: Any, equation: str) -> None:
-        for symbol in algebra.symbols(sp.sympify(expr)):
+        for symbol in algebra.symbols(expr):
             if symbol not in needed or self.order(equation) < self.order(needed[symbol]):
                 needed[symbol] = equation
 

@@ -9,7 +9,6 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Output
-from pne_sym.lowering.algebra import replaced
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.coupling import with_coupling
@@ -20,9 +19,9 @@ from pne_sym.lowering.public import public_functions
 from pne_sym.lowering.shapes import shapes
 from pne_sym.lowering.signs import settle
 from pne_sym.lowering.simplify import inline_single_use
-from pne_sym.lowering.statements import Guard
+from pne_sym.lowering.statements import rewritten
 from pne_sym.lowering.stores import stores
-from pne_sym.program.ir import Kind, Program, Stage, Store
+from pne_sym.program.ir import Check, Kind, Program, Stage, Store
 from pne_sym.program.verify import verify
 
 # Arrays of each function; functions of one group are lowered together, so that they share
@@ -72,10 +71,10 @@ def lower(derivation: Derivation) -> Program:
         lowerings.append(lowering)
         for name, arrays in group:
             chosen = [
-                (stage, store)
+                store
                 for output, found in stored.items()
                 if output.array in arrays
-                for stage, store in found
+                for store in found
             ]
             # What is zero throughout, as the force of massless legs is, has no stores.
             present = tuple(a for a in arrays if 0 not in shape_of.get(a, (0,)))
@@ -94,7 +93,7 @@ def lower(derivation: Derivation) -> Program:
 
 def _add_margins(derivation: Derivation, builder: Builder, slices: dict[str, Slice]) -> None:
     """H, Hk and the margins of all guards of M, Z, H and inverse dynamics join the lengths."""
-    guards: list[Guard] = []
+    guards: list[Check] = []
     for name in ("dynamics", "required"):
         known = {g.equation for g in guards}  # of the same values, lowered for other functions
         guards += [g for g in slices[name].roots(builder)[1] if g.equation not in known]
@@ -115,7 +114,7 @@ def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, 
     ]
 
 
-_Stored = dict[Output, list[tuple[Stage, Store]]]
+_Stored = dict[Output, list[Store]]
 
 
 def _cheapest_stores(
@@ -143,7 +142,7 @@ def _cheapest_stores(
             lowering.form_tip_axes()
         made = {output: stores(lowering, output) for output in (*cheap, *others)}
         builder.keep_nothing()
-        cost = builder.cost([s.value for output in cheap for _, s in made[output]])
+        cost = builder.cost([s.value for output in cheap for s in made[output]])
         return cost, (made, lowering)
 
     mark = builder.mark()
@@ -161,16 +160,13 @@ def _settle_signs(builder: Builder, meaning: Meaning, slices: list[Slice]) -> No
     """Values that are components get their signs, where that costs nothing."""
     used = builder.needed(set().union(*(part.roots(builder)[0] for part in slices)))
     stored = dict.fromkeys(store for part in slices for store in part.stores)
-    printed = inline_single_use(used, list(stored), builder.guards)
-    turned = settle(builder, meaning, printed, [store.value for _, store in stored])
+    printed = inline_single_use(used, [*stored, *builder.guards])
+    turned = settle(builder, meaning, printed, [store.value for store in stored])
     signs = {symbol: -symbol for symbol in turned}
     for part in slices:
-        part.stores = [
-            (at, replace(store, value=replaced(sp.sympify(store.value), signs)))
-            for at, store in part.stores
-        ]
+        part.stores = [rewritten(store, signs) for store in part.stores]
         if part.guards is not None:
-            part.guards = [g.rewritten(signs) for g in part.guards]
+            part.guards = [rewritten(guard, signs) for guard in part.guards]
 
 
 def _declare(derivation: Derivation, builder: Builder) -> None:

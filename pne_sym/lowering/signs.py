@@ -118,7 +118,7 @@ class _Signs:
         }
         self.stored: dict[Any, list[int]] = {}
         for value in stored:
-            sign, symbol = algebra.signed(sp.sympify(value))
+            sign, symbol = algebra.signed(value)
             self.stored.setdefault(symbol, []).append(sign)
 
     def turn(self, group: Sequence[Any]) -> bool:

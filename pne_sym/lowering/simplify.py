@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -11,28 +10,19 @@ import sympy as sp
 
 from pne_sym.lowering.algebra import operations, replaced, symbols
 from pne_sym.lowering.algebra import symbol as as_symbol
-from pne_sym.lowering.statements import Statement
-from pne_sym.program.ir import Stage, Store
+from pne_sym.lowering.statements import End, Statement, read_by
 
 _LONGEST = 14  # operations in one statement: beyond it lines get hard to read
 
 
-def inline_single_use(
-    statements: list[Statement],
-    stores: list[tuple[Stage, Store]],
-    guards: list[Any],
-) -> list[Statement]:
+def inline_single_use(statements: list[Statement], ends: Sequence[End]) -> list[Statement]:
     """Put unnamed values that are used once into the statement that uses them."""
     uses: dict[Any, int] = {}
     for statement in statements:
         for symbol, times in _occurrences(statement.expr).items():
             uses[symbol] = uses.get(symbol, 0) + times
-    for _, store in stores:
-        for symbol in symbols(sp.sympify(store.value)):
-            uses[symbol] = uses.get(symbol, 0) + 2  # outputs keep their names
-    for guard in guards:
-        for symbol in (*symbols(guard.value), *symbols(guard.scale)):
-            uses[symbol] = uses.get(symbol, 0) + 2
+    for symbol in read_by(ends):  # outputs, and what guards need, keep their names
+        uses[symbol] = uses.get(symbol, 0) + 2
     inlined: dict[Any, Any] = {}
     kept: list[Statement] = []
     users = {symbol: s for s in statements for symbol in symbols(s.expr)}
@@ -52,15 +42,12 @@ def inline_single_use(
             inlined[statement.target] = expr
             continue
         kept.append(statement if expr is statement.expr else statement._replace(expr=expr))
-    return still_used(kept, stores, guards)
+    return still_used(kept, ends)
 
 
-def still_used(
-    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
-) -> list[Statement]:
+def still_used(statements: list[Statement], ends: Iterable[End]) -> list[Statement]:
     """The statements that are still used: terms may cancel where a value is put in place."""
-    wanted = {s for _, store in stores for s in symbols(sp.sympify(store.value))}
-    wanted |= {s for g in guards for s in (*symbols(g.value), *symbols(g.scale))}
+    wanted = read_by(ends)
     found: list[Statement] = []
     for statement in reversed(statements):
         if statement.target in wanted:
@@ -95,22 +82,12 @@ def numbered(
     return names
 
 
-def renamed(
-    names: dict[Any, Any],
-    statements: list[Statement],
-    stores: list[tuple[Stage, Store]],
-    guards: list[Any],
-) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
-    """Statements, stores and guards with other names."""
-
-    def again(expr: Any) -> Any:
-        return replaced(sp.sympify(expr), names)
-
-    return (
-        [s._replace(target=names.get(s.target, s.target), expr=again(s.expr)) for s in statements],
-        [(stage, replace(store, value=again(store.value))) for stage, store in stores],
-        [replace(g, value=again(g.value), scale=again(g.scale)) for g in guards],
-    )
+def renamed(names: dict[Any, Any], statements: Iterable[Statement]) -> list[Statement]:
+    """Statements with other names."""
+    return [
+        s._replace(target=names.get(s.target, s.target), expr=replaced(s.expr, names))
+        for s in statements
+    ]
 
 
 @lru_cache(1 << 16)

@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import sympy as sp
 
 from pne_sym.lowering import algebra
 from pne_sym.lowering.algebra import operations
-from pne_sym.program.ir import Stage
+from pne_sym.program.ir import Check, Stage, Store
 
 Atom = Any  # sympy Symbol, -Symbol or Number
 
@@ -43,24 +43,29 @@ class Statement(NamedTuple):
     is_named: bool = False
     hint: str = ""
 
+    @property
+    def read(self) -> tuple[Any, ...]:
+        """Expressions in it."""
+        return (self.expr,)
 
-@dataclass(frozen=True)
-class Guard:
-    """A condition on values: see `derivation.Condition`."""
 
-    status: str
-    value: Any
-    scale: Any
-    power: int
-    stage: Stage
-    equation: str
+End = Check | Store
+"""What becomes of values."""
+_End = TypeVar("_End", bound=End)
 
-    def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
-        """With other expressions for its values; of a tested pivot the sign says nothing."""
-        value, scale = (algebra.replaced(sp.sympify(e), changes) for e in (self.value, self.scale))
-        if self.status == "singular":
-            value = algebra.signed(value)[1]
-        return replace(self, value=value, scale=scale)
+
+def rewritten(end: _End, changes: Mapping[Any, Any]) -> _End:
+    """With other expressions for its values; of a tested pivot the sign says nothing."""
+    value = algebra.replaced(end.value, changes)
+    if not isinstance(end, Check):
+        return replace(end, value=value)
+    value = algebra.signed(value)[1] if end.status == "singular" else value
+    return replace(end, value=value, scale=algebra.replaced(end.scale, changes))
+
+
+def read_by(items: Iterable[Statement | End]) -> set[Any]:
+    """Symbols in statements, guards and entries."""
+    return set().union(*(algebra.symbols(e) for item in items for e in item.read))
 
 
 class _Known:
@@ -95,7 +100,7 @@ class Undone:
 
     statements: list[tuple[_Known, Statement, tuple[_Known, ...]]]
     values: list[tuple[Any, Atom]]
-    guards: list[Guard]
+    guards: list[Check]
     issues: list[tuple[str, int, int]]
 
 
@@ -103,7 +108,7 @@ class Statements:
     """Statements in the order of their making, each value under the expression that it has."""
 
     def __init__(self) -> None:
-        self.guards: list[Guard] = []
+        self.guards: list[Check] = []
         self.equation = ""
         self.quantity_of: dict[str, str] = {}
         self.leg_counts: dict[str, int] = {}
@@ -208,7 +213,7 @@ class Statements:
         if value.is_Number or not self.stage_of(value).depends_on_state:
             return
         stage = Stage.join((self.stage_of(value), self.stage_of(sp.sympify(scale))))
-        guard = Guard(status, value, sp.sympify(scale), power, stage, self.equation)
+        guard = Check(status, value, sp.sympify(scale), power, self.equation, stage)
         if guard not in self.guards:
             self.guards.append(guard)
 
@@ -262,7 +267,7 @@ class Statements:
             known = self._known[s.target]
             known.made, known.weight = made, None
             known.needs = tuple(part for part in self._parts(made.expr) if part.made)
-        self.guards = [guard.rewritten(changes) for guard in self.guards]
+        self.guards = [rewritten(guard, changes) for guard in self.guards]
 
     # ---- what is needed --------------------------------------------------------------
 

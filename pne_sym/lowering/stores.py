@@ -14,8 +14,8 @@ from pne_sym.program.ir import Kind, Stage, Store
 from pne_sym.vector import Tensor, Vector
 
 
-def stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
-    """Entries of an output array with the atoms that go there, and when that can be."""
+def stores(lowering: Lowering, output: Output) -> list[Store]:
+    """Entries of an output array with the atoms that go there."""
     b = lowering.b
     components = _components(lowering, output)
     b.keep(components.values())
@@ -29,7 +29,7 @@ def stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
         if output.leg_type:
             stage = Stage(Kind.STATE_LEG, output.leg_type)
         for r, c in _places(output, row, column):
-            found.append((stage, Store(output.array, atom, r, c, b.equation)))
+            found.append(Store(output.array, atom, r, c, b.equation, stage))
     return found
 
 

@@ -84,9 +84,9 @@ def prepare(program: Program, given: Mapping[str, Array]) -> dict[str, Array]:
     with np.errstate(all="ignore"):
         for block in program.prepare:
             _assign(block.assignments, values)
-            for target, value in block.sums:
-                terms = np.broadcast_to(value_of(value, values), (legs[block.leg_type], 1))
-                values[target.name] = np.sum(terms, axis=0)
+            for s in block.sums:
+                terms = np.broadcast_to(value_of(s.expr, values), (legs[block.leg_type], 1))
+                values[s.target.name] = np.sum(terms, axis=0)
     return values
 
 
@@ -147,9 +147,9 @@ class _Run:
     def _block(self, block: Block) -> None:
         _assign(block.assignments, self.values)
         self._check(block.checks, block.leg_type)
-        for target, value in block.sums:
-            terms = self._over_legs(value_of(value, self.values), block.leg_type)
-            self.values[target.name] = np.sum(terms, axis=0)
+        for s in block.sums:
+            terms = self._over_legs(value_of(s.expr, self.values), block.leg_type)
+            self.values[s.target.name] = np.sum(terms, axis=0)
         for store in block.stores:
             self._store(store, block.leg_type)
 

@@ -115,6 +115,11 @@ class Assignment:
     expr: Any
     equation: str
 
+    @property
+    def read(self) -> tuple[Any, ...]:
+        """Expressions in it."""
+        return (self.expr,)
+
 
 VECTORS = ("X", "V", "A", "base", "q")
 """What functions take, in this order: pose, velocity, acceleration, motion of the base,
@@ -126,7 +131,7 @@ class Check:
     """A guard: failing means the state is impossible.
 
     INVALID: value > 0 and finite.  UNREACHABLE: value >= 0.
-    SINGULAR: |value| > tolerance^power * scale.
+    SINGULAR: |value| > tolerance^power * scale.  `stage`: at which its values are known.
     """
 
     status: str
@@ -134,6 +139,12 @@ class Check:
     scale: Any
     power: int
     equation: str
+    stage: Stage = Stage(Kind.STATE)
+
+    @property
+    def read(self) -> tuple[Any, ...]:
+        """Expressions in it."""
+        return self.value, self.scale
 
 
 @dataclass(frozen=True)
@@ -141,7 +152,7 @@ class Store:
     """An entry of an output array.
 
     For a value per leg, `row` and `column` are tables over the legs of the type.  `equation` is
-    that of the quantity whose component is stored.
+    that of the quantity whose component is stored, `stage` that at which it is stored.
     """
 
     array: str
@@ -149,6 +160,12 @@ class Store:
     row: int | tuple[int, ...]
     column: int | tuple[int, ...] | None = None
     equation: str = ""
+    stage: Stage = Stage(Kind.STATE)
+
+    @property
+    def read(self) -> tuple[Any, ...]:
+        """Expressions in it."""
+        return (self.value,)
 
 
 @dataclass(frozen=True)
@@ -159,17 +176,20 @@ class Block:
         leg_type: name of the leg type looped over, or "".
         assignments: in order.
         checks: guards evaluated at the end of the block.
-        sums: (target, value) accumulated over the legs.
-        sum_equations: the equation of each sum.
+        sums: what is accumulated over the legs.
         stores: outputs written.
     """
 
     leg_type: str
     assignments: tuple[Assignment, ...]
     checks: tuple[Check, ...] = ()
-    sums: tuple[tuple[sp.Symbol, Any], ...] = ()
+    sums: tuple[Assignment, ...] = ()
     stores: tuple[Store, ...] = ()
-    sum_equations: tuple[str, ...] = ()
+
+    @property
+    def ends(self) -> tuple[Check | Assignment | Store, ...]:
+        """What is made of the values of its statements."""
+        return *self.checks, *self.sums, *self.stores
 
 
 @dataclass(frozen=True)

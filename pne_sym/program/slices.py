@@ -5,15 +5,13 @@ Everything here follows from the function; back ends ask for it instead of readi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import prod
 from typing import Any
 
-import sympy as sp
-
-from pne_sym.program.ir import Assignment, Block, Function, Store
+from pne_sym.program.ir import Assignment, Block, Check, Function, Store
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ def slices(function: Function) -> Slices:
         legs,
         after,
         tuple(n for n in dict.fromkeys(made) if n in later),
-        tuple(dict.fromkeys(t.name for b in legs for t, _ in b.sums)),
+        tuple(dict.fromkeys(s.target.name for b in legs for s in b.sums)),
     )
 
 
@@ -86,20 +84,14 @@ def read_in(expr: Any) -> frozenset[str]:
     return frozenset[str]().union(*map(read_in, expr.args))
 
 
-def read_by(assignments: tuple[Assignment, ...]) -> set[str]:
-    """Names on the right-hand sides of assignments."""
-    return set[str]().union(*(read_in(a.expr) for a in assignments))
+def read_by(items: Iterable[Assignment | Check | Store]) -> set[str]:
+    """Names that assignments, checks and entries read."""
+    return set[str]().union(*(read_in(e) for item in items for e in item.read))
 
 
 def symbols(block: Block | None) -> set[str]:
     """Names that a block reads, those that it makes for itself included."""
-    if block is None:
-        return set()
-    expressions = [a.expr for a in block.assignments]
-    expressions += [sp.sympify(s.value) for s in block.stores]
-    expressions += [sp.sympify(v) for _, v in block.sums]
-    expressions += [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
-    return set[str]().union(*map(read_in, expressions))
+    return read_by((*block.assignments, *block.ends)) if block else set()
 
 
 def columns(shape: tuple[int, ...]) -> int:

@@ -120,11 +120,10 @@ class _Scope:
                 self.assign(a.target, a.expr, leg_type, a.equation)
             self.checks(block.checks, leg_type)
             self.require(bool(leg_type) or not block.sums, "a sum over no legs")
-            told = len(block.sum_equations) == len(block.sums) and all(block.sum_equations)
-            self.require(told, "a sum without an equation id")
-            for target, value in block.sums:
-                self.use([value], leg_type, f"sum {target}")
-                totals.append(target)
+            for s in block.sums:
+                self.require(bool(s.equation), "a sum without an equation id")
+                self.use([s.expr], leg_type, f"sum {s.target}")
+                totals.append(s.target)
             for store in block.stores if arrays is not None else ():
                 self.use([store.value], leg_type, f"output {store.array}")
                 self.require(store.array in (arrays or ()), f"{store.array} is not an output")

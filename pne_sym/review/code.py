@@ -119,8 +119,8 @@ def statements_of(block: Block) -> Iterator[tuple[str, str, str]]:
     """(equation, target, text) of assignments, sums and stores."""
     for a in block.assignments:
         yield a.equation, str(a.target), f"{a.target} = {plain(a.expr)}"
-    for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
-        yield equation, str(target), f"{target} += {plain(value)}"
+    for a in block.sums:
+        yield a.equation, str(a.target), f"{a.target} += {plain(a.expr)}"
     for s in block.stores:
         place = f"{s.array}[{s.row}{'' if s.column is None else f', {s.column}'}]"
         yield (

@@ -145,9 +145,8 @@ class _Values:
             legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
             for a in block.assignments:
                 yield from self._named(str(a.target), a.equation, legs)
-            totals = zip(block.sums, block.sum_equations, strict=True)
-            for (target, _), equation in totals:
-                yield from self._named(str(target), equation, (None,))
+            for s in block.sums:
+                yield from self._named(str(s.target), s.equation, (None,))
 
     def _named(self, name: str, equation: str, legs: Sequence[int | None]) -> Iterator[Statement]:
         for component in self.means.get(name, ()):

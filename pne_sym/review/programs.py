@@ -119,7 +119,6 @@ def _definitions(blocks: Iterable[Block]) -> dict[str, list[tuple[str, Any]]]:
     """What defines each value: leg type and expression of its statements."""
     found: dict[str, list[tuple[str, Any]]] = {}
     for block in blocks:
-        pairs = (*((a.target, a.expr) for a in block.assignments), *block.sums)
-        for target, expr in pairs:
-            found.setdefault(str(target), []).append((block.leg_type, expr))
+        for a in (*block.assignments, *block.sums):
+            found.setdefault(str(a.target), []).append((block.leg_type, a.expr))
     return found

@@ -88,8 +88,8 @@ def _in_block(where: str, block: Block, units: Units) -> Iterator[str]:
         value, scale = units.of(check.value), units.of(check.scale)
         if check.status == "singular" and None not in (value, scale) and value != scale:
             yield f"{where}: ({check.equation}) {check.value} [{value}] against [{scale}]"
-    for target, value in block.sums:
-        units[target.name] = units.of(value)
+    for s in block.sums:
+        units[s.target.name] = units.of(s.expr)
 
 
 def _conjugate(stored: dict[Entry, Dimension], c: Coordinates) -> Iterator[str]:

@@ -9,8 +9,8 @@ import pytest
 import sympy as sp
 
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
-from pne_sym.lowering.statements import Guard, Statement
-from pne_sym.program.ir import Stage, Store
+from pne_sym.lowering.statements import Statement, read_by, rewritten
+from pne_sym.program.ir import Check, Store
 from tests.lowering.numbers import STATE, run
 
 x, y, z, a, c, d, e = sp.symbols("x y z a c d e", real=True)
@@ -21,8 +21,8 @@ def _statement(target: Any, expr: Any, **more: Any) -> Statement:
     return Statement(target, expr, STATE, "eq1", **more)
 
 
-def _stores(*values: Any) -> list[tuple[Stage, Store]]:
-    return [(STATE, Store("out", value, k)) for k, value in enumerate(values)]
+def _stores(*values: Any) -> list[Store]:
+    return [Store("out", value, k) for k, value in enumerate(values)]
 
 
 def _values(statements: list[Statement], *wanted: Any) -> list[float]:
@@ -32,7 +32,7 @@ def _values(statements: list[Statement], *wanted: Any) -> list[float]:
 
 def test_a_value_used_once_is_put_in_its_place() -> None:
     before = [_statement(a, x * y), _statement(c, a + z)]
-    after = inline_single_use(before, _stores(c), [])
+    after = inline_single_use(before, _stores(c))
     assert [s.target for s in after] == [c]
     assert _values(after, c) == pytest.approx(_values(before, c))
 
@@ -50,14 +50,14 @@ def test_a_value_used_once_is_put_in_its_place() -> None:
     ids=["named", "used twice", "a sum over legs", "twice in one statement", "squared", "cubed"],
 )
 def test_other_values_keep_their_statement(statements: list[Statement]) -> None:
-    after = inline_single_use(statements, _stores(statements[-1].target), [])
+    after = inline_single_use(statements, _stores(statements[-1].target))
     assert a in {s.target for s in after}
 
 
 def test_outputs_and_guards_keep_their_names() -> None:
-    guard = Guard("singular", d, sp.S.One, 1, STATE, "eq1")
+    guard = Check("singular", d, sp.S.One, 1, "eq1")
     before = [_statement(a, x * y), _statement(d, x + y), _statement(c, a + d)]
-    after = inline_single_use(before, _stores(a, c), [guard])
+    after = inline_single_use(before, [*_stores(a, c), guard])
     assert [s.target for s in after] == [a, d, c]
 
 
@@ -69,7 +69,7 @@ def test_what_cancels_away_leaves_no_statement_behind() -> None:
         _statement(e, a + d),
         _statement(c, e - d),
     ]
-    after = inline_single_use(before, _stores(c), [])
+    after = inline_single_use(before, _stores(c))
     assert d not in {s.target for s in after}
     assert _values(after, c) == pytest.approx(_values(before, c))
 
@@ -78,14 +78,14 @@ def test_statements_stay_short() -> None:
     names = sp.symbols("v0:40", real=True)
     before = [_statement(names[0], x + y)]
     before += [_statement(n, m * z + k) for k, (m, n) in enumerate(pairwise(names), 2)]
-    after = inline_single_use(before, _stores(names[-1]), [])
+    after = inline_single_use(before, _stores(names[-1]))
     assert 2 < len(after) < 20
     assert _values(after, names[-1]) == pytest.approx(_values(before, names[-1]))
 
 
 def test_no_absolute_value_comes_of_the_root_of_a_square() -> None:
     before = [_statement(a, x**2), _statement(c, sp.sqrt(a))]
-    after = inline_single_use(before, _stores(c), [])
+    after = inline_single_use(before, _stores(c))
     assert not any(s.expr.has(sp.Abs) for s in after)
     assert _values(after, c) == pytest.approx([1.5])
 
@@ -95,8 +95,7 @@ def test_names_depend_on_the_statements_alone() -> None:
     second = Statement(sp.Symbol("r_99", real=True), first.target + z, STATE, "eq1", hint="r")
     names = numbered([first, second], {"r"}, lambda statement, _: statement.hint)
     assert [str(names[s.target]) for s in (first, second)] == ["r_2", "r_3"]
-    guard = Guard("singular", second.target, z, 1, STATE, "eq1")
-    statements, stores, guards = renamed(names, [first, second], _stores(second.target), [guard])
-    after = {str(s) for part in (statements[1].expr, stores[0][1].value, guards[0].value)
-             for s in part.free_symbols}  # fmt: skip
+    guard = Check("singular", second.target, z, 1, "eq1")
+    ends = [rewritten(end, names) for end in (*_stores(second.target), guard)]
+    after = {str(s) for s in read_by([*renamed(names, [first, second]), *ends])}
     assert not after & {"r_17", "r_99"}

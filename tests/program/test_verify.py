@@ -52,8 +52,7 @@ def program(**changes: Any) -> Program:
                 "leg",
                 (Assignment(real("v"), sp.sqrt(real("u")) * real("k2") / real("y"), "L1"),),
                 checks=(Check("singular", real("v"), real("k2"), 1, "L1"),),
-                sums=((real("w"), real("v")),),
-                sum_equations=("E1",),
+                sums=(Assignment(real("w"), real("v"), "E1"),),
                 stores=(_store("M", -real("v"), (0, 1), 1),),
             ),
             Block(
@@ -119,7 +118,10 @@ SPOILT: dict[str, tuple[Callable[[], Program], str]] = {
         lambda: with_leg(assignments=(Assignment(real("y"), real("t"), "L1"),)),
         "assigned twice",
     ),
-    "a sum assigned": (lambda: with_leg(sums=((real("u"), real("v")),)), "u is assigned twice"),
+    "a sum assigned": (
+        lambda: with_leg(sums=(Assignment(real("u"), real("v"), "E1"),)),
+        "u is assigned twice",
+    ),
     "used before": (lambda: blocks(lambda b: b.reverse()), "w is not defined before"),
     "used within its own statement": (lambda: with_first(real("u") + 1), "u is not defined before"),
     "unknown name": (lambda: with_first(real("nobody")), "f: u = nobody: nobody is not defined"),
@@ -233,11 +235,15 @@ SPOILT: dict[str, tuple[Callable[[], Program], str]] = {
         "uneven",
     ),
     "a sum over no legs": (
-        lambda: blocks(lambda b: b.__setitem__(0, replace(b[0], sums=((real("w"), real("t")),)))),
+        lambda: blocks(
+            lambda b: b.__setitem__(
+                0, replace(b[0], sums=(Assignment(real("w"), real("t"), "E1"),))
+            )
+        ),
         "a sum over no legs",
     ),
     "a sum of an unknown value": (
-        lambda: with_leg(sums=((real("w"), real("q")),)),
+        lambda: with_leg(sums=(Assignment(real("w"), real("q"), "E1"),)),
         "sum w: q is not defined",
     ),
     "two loops over a leg type": (lambda: blocks(lambda b: b.append(b[1])), "two loops over 'leg'"),

@@ -81,11 +81,7 @@ def _scopes(program: Program) -> list[tuple[tuple[Block, ...], Any]]:
 
 
 def _targets(blocks: tuple[Block, ...]) -> list[tuple[str, str]]:
-    found = [(str(a.target), a.equation) for block in blocks for a in block.assignments]
-    for block in blocks:
-        totals = zip(block.sums, block.sum_equations, strict=True)
-        found += [(str(target), equation) for (target, _), equation in totals]
-    return found
+    return [(str(a.target), a.equation) for b in blocks for a in (*b.assignments, *b.sums)]
 
 
 def test_statements_follow_the_derivation() -> None:
