@@ -21,7 +21,7 @@ from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
-from pne_sym.program.interpret import REST, Interpreter, PoseLayout
+from pne_sym.program.interpret import REST, Interpreter
 from pne_sym.program.iteration import close_loops
 
 Array = NDArray[np.float64]
@@ -141,9 +141,7 @@ class _Model:
     def _unsolved(self, actuators: int) -> dict[str, Flags]:
         """Functions that solve linear equations -> states at which these have no solution."""
         c, program = self.bundle.coordinates, self.bundle.program
-        layout = PoseLayout(c.position, c.has_quaternion)
-        home_q = np.array(c.home[1])
-        model = Interpreter(program, program.public, self.prepared, home_q, layout)
+        model = Interpreter(program, self.prepared, c.home[1])
         given = {**self.vectors, "tau": np.ones((len(self.vectors["X"]), actuators))}
         usable = self.converged & (self.found["dynamics"].status == Status.OK)
         found = {}

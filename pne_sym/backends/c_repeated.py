@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
-from pne_sym.program.public import Apply, PublicFunction, Run, Value
+from pne_sym.program.public import Apply, PublicFunction, Value
 
 
 def repeated(
@@ -31,8 +31,8 @@ def repeated(
         return ()
     if (*begin, replace(last, targets=found.targets)) != f.steps[:n]:
         return ()
-    made = {t.name for step in begin if isinstance(step, Apply | Run) for t in step.targets}
-    later = {o.name for step in f.steps[n:] if isinstance(step, Apply) for o in step.operands}
+    made = {t.name for step in begin for t in step.targets}
+    later = {o.name for step in f.steps[n:] for o in step.operands}
     values = {o.name: v for o, v in zip(last.targets, found.targets, strict=True)}
     if made & (later | {o.name for o in f.outputs}) or values.keys() != {
         o.name for o in other.outputs

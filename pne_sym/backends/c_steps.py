@@ -258,7 +258,8 @@ class Steps:
             trial=residual.call_with({"X": "trial", "residual_out": "next"}),
         )  # fmt: skip
         self.before.append(text)
-        arguments = ", ".join(("m", *others, step.start.name, self.arrays.made(step.target)))
+        (start,), (target,) = step.operands, step.targets
+        arguments = ", ".join(("m", *others, start.name, self.arrays.made(target)))
         return [f"flag_status(search_{step.residual}({arguments}), &why);"]
 
     def _extent(self, name: str) -> str:

@@ -126,8 +126,8 @@ def _step(program: Program, step: Run | Search, judged: set[str]) -> list[str]:
     given, guess = (f"({''.join(f'{n}, ' for n in inputs_of[n])})".replace(", )", ",)")
                     for n in (step.residual, step.slope))  # fmt: skip
     functions = f"_steps_{step.residual}, _steps_{step.slope}"
-    arguments = f"{functions}, {step.start.name}, {given}, {guess}, {step.halving}"
-    return _wrapped(f"{step.target.name} = _search(m, {arguments})")
+    arguments = f"{functions}, {step.operands[0].name}, {given}, {guess}, {step.halving}"
+    return _wrapped(f"{step.targets[0].name} = _search(m, {arguments})")
 
 
 def _wrapped(line: str) -> list[str]:

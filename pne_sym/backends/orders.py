@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.program.evaluate import Status, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import Interpreter
 from pne_sym.program.public import Apply, Argument, PublicFunction
 
 LARGEST = 6
@@ -52,13 +52,8 @@ def order_at_home(bundle: Bundle, function: PublicFunction, solve: Apply) -> Ord
     result = (Argument(matrix, (), ""),)
     part = PublicFunction("part", "", function.inputs, result, before, "")
     c, program = bundle.coordinates, bundle.program
-    model = Interpreter(
-        program,
-        [part],
-        prepare(program, bundle.derivation.parameters.values()),
-        np.array(c.home[1]),
-        PoseLayout(c.position, c.has_quaternion),
-    )
+    values = prepare(program, bundle.derivation.parameters.values())
+    model = Interpreter(program, values, c.home[1], part)
     given = {a.name: np.zeros((1, *a.value.shape)) for a in part.required} | {
         "X": np.array([c.home[0]])
     }

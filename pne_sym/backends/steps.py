@@ -112,8 +112,8 @@ class StepText:
             return [self.run.format(each=each.rstrip(), function=step.function, inputs=inputs)]
         if isinstance(step, Search):
             text = self.search.format(
-                target=step.target.name,
-                start=step.start.name,
+                target=step.targets[0].name,
+                start=step.operands[0].name,
                 residual=step.residual,
                 slope=step.slope,
                 given=self.others(step.residual),

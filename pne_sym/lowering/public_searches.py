@@ -50,7 +50,7 @@ def _slope(w: Writer) -> PublicFunction:
 
 def _forward_kinematics(w: Writer) -> PublicFunction:
     a, X = Algorithm(), Value("X_found", (w.n["NQ"],))
-    a.steps.append(Search("pose_residual", "slope", w.given("X0").value, X, halving=True))
+    a.steps.append(Search("pose_residual", "slope", (w.given("X0").value,), (X,), halving=True))
     return w.function(
         "forward_kinematics",
         "X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.",
@@ -69,7 +69,9 @@ def _projection(w: Writer) -> list[PublicFunction]:
     (Hk,) = slope.run("Hk", w.program, "Hk")
     a, X = Algorithm(), Value("X_found", (w.n["NQ"],))
     a.steps.append(
-        Search("constraint_residual", "constraint_slope", w.given("X").value, X, halving=False)
+        Search(
+            "constraint_residual", "constraint_slope", (w.given("X").value,), (X,), halving=False
+        )
     )
     return [
         w.function(

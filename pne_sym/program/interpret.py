@@ -36,27 +36,6 @@ class Answer:
     status: NDArray[np.int_]
 
 
-@dataclass(frozen=True)
-class PoseLayout:
-    """Where the parts of X stand.
-
-    Attributes:
-        position: number of entries of the position, which come first.
-        quaternion: the orientation is a quaternion, behind the position.
-    """
-
-    position: int
-    quaternion: bool
-
-    def moved(self, X: Array, step: Array) -> Array:
-        """X moved by small displacements: linear, then a rotation vector, then extra ones."""
-        if not self.quaternion:
-            return X + step
-        at = self.position
-        (q,) = OPERATIONS["turn_quaternion"]((X[:, at : at + 4], step[:, at : at + 3]), ())
-        return np.concatenate((X[:, :at] + step[:, :at], q, X[:, at + 4 :] + step[:, at + 3 :]), 1)
-
-
 def inputs_read(program: Program, function: PublicFunction) -> set[str]:
     """Names of the inputs on which its results depend: others may be anything.
 
@@ -66,14 +45,13 @@ def inputs_read(program: Program, function: PublicFunction) -> set[str]:
         return {a.name for a in function.inputs}
     read = set[str]()
     for step in function.steps:
+        read |= {operand.name for operand in step.operands}
         if isinstance(step, Run):
             vectors = program.functions[step.function].inputs
             read |= {"X", "q0", *vectors} if "q" in vectors else set(vectors)
-        elif isinstance(step, Apply):
-            read |= {operand.name for operand in step.operands}
-        else:
+        elif isinstance(step, Search):
             parts = (f for f in program.public if f.name in (step.residual, step.slope))
-            read |= {step.start.name}.union(*(inputs_read(program, f) - {"X"} for f in parts))
+            read |= set[str]().union(*(inputs_read(program, f) - {"X"} for f in parts))
     return read & {a.name for a in function.inputs}
 
 
@@ -83,19 +61,18 @@ def judged(a: Array, *, unbounded: bool) -> Array:
 
 
 class Interpreter:
-    """The public functions of a model at prepared parameters."""
+    """The public functions of a model, and others, at prepared parameters."""
 
     def __init__(
         self,
         program: Program,
-        functions: Sequence[PublicFunction],
         prepared: Mapping[str, Array],
-        home_q: Array,
-        layout: PoseLayout,
+        home_q: Sequence[float] | Array,
+        *others: PublicFunction,
     ) -> None:
         self.program, self.prepared = program, prepared
-        self.functions = {f.name: f for f in functions}
-        self.home_q, self.layout = np.asarray(home_q, dtype=float), layout
+        self.functions = {f.name: f for f in (*program.public, *others)}
+        self.home_q = np.asarray(home_q, dtype=float)
 
     def call(self, name: str, **arguments: Array) -> Answer:
         """A public function at arguments (states, n); optional ones may be left out.
@@ -147,7 +124,7 @@ class _State:
         elif isinstance(step, Apply):
             self._apply(step)
         else:
-            self.values[step.target.name] = self._search(step)
+            self.values[step.targets[0].name] = self._search(step)
 
     def _run(self, step: Run) -> None:
         function = self.model.program.functions[step.function]
@@ -194,9 +171,10 @@ class _State:
 
     def _search(self, step: Search) -> Array:
         """Gauss-Newton, state by state."""
-        found = np.array(self.values[step.start.name])
+        start = step.operands[0].name
+        found = np.array(self.values[start])
         for k in range(self.states):
-            row = {n: v[k : k + 1] for n, v in self.values.items() if n != step.start.name}
+            row = {n: v[k : k + 1] for n, v in self.values.items() if n != start}
             found[k], status = self._search_one(step, found[k : k + 1], row)
             if status is not Status.OK:
                 self.flag(np.arange(self.states) == k, status)
@@ -205,7 +183,7 @@ class _State:
     def _search_one(
         self, step: Search, X: Array, given: Mapping[str, Array]
     ) -> tuple[Array, Status]:
-        call, layout = self.model.call, self.model.layout
+        call = self.model.call
         names = [a.name for a in self.model.functions[step.residual].inputs]
         others = {n: v for n, v in given.items() if n in names and n != "X"}
         slope_of = {n: v for n, v in others.items() if n == "q0"}
@@ -222,7 +200,7 @@ class _State:
                 return X[0] * np.nan, Status.SINGULAR
             change = np.linalg.lstsq(slope[0].T, residual[0], rcond=1e-10)[0]
             for halving in range(HALVINGS if step.halving else 1):
-                trial = layout.moved(X, change[None] * 0.5**halving)
+                (trial,) = call("retract", X=X, step=change[None] * 0.5**halving).outputs
                 answer = call(step.residual, X=trial, **others)
                 (trial_residual,) = answer.outputs
                 if not step.halving or np.max(np.abs(trial_residual), initial=0.0) < size:

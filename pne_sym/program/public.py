@@ -8,7 +8,7 @@ equations ...) to arrays of one state.  Every operation has one definition, in
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from keyword import iskeyword
 
@@ -76,10 +76,12 @@ class Run:
     Attributes:
         function: its name.
         targets: its arrays, in its order.
+        operands: arrays of the state besides the input vectors: none.
     """
 
     function: str
     targets: tuple[Value, ...]
+    operands: tuple[Value, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -108,16 +110,16 @@ class Search:
     Attributes:
         residual, slope: internal public functions of the pose: the residual (n,) and its
             derivative by a small displacement of the pose, (NV, n).
-        start: first guess.
-        target: the pose.
+        operands: the first guess.
+        targets: the pose.
         halving: steps are halved until the residual is smaller; otherwise they are taken as they
             are.
     """
 
     residual: str
     slope: str
-    start: Value
-    target: Value
+    operands: tuple[Value, ...]
+    targets: tuple[Value, ...]
     halving: bool
 
 
@@ -211,21 +213,16 @@ def renamed(function: PublicFunction, names: Mapping[str, str]) -> PublicFunctio
     def named(value: Value) -> Value:
         return replace(value, name=names.get(value.name, value.name))
 
+    def again(step: Step) -> Step:
+        operands, targets = (tuple(map(named, own)) for own in (step.operands, step.targets))
+        return replace(step, operands=operands, targets=targets)
+
     return replace(
         function,
         inputs=tuple(replace(i, value=named(i.value)) for i in function.inputs),
         outputs=tuple(replace(o, value=named(o.value)) for o in function.outputs),
-        steps=tuple(_renamed(step, named) for step in function.steps),
+        steps=tuple(map(again, function.steps)),
     )
-
-
-def _renamed(step: Step, named: Callable[[Value], Value]) -> Step:
-    if isinstance(step, Search):
-        return replace(step, start=named(step.start), target=named(step.target))
-    targets = tuple(map(named, step.targets))
-    if isinstance(step, Run):
-        return replace(step, targets=targets)
-    return replace(step, targets=targets, operands=tuple(map(named, step.operands)))
 
 
 class StepError(Exception):
@@ -245,12 +242,9 @@ def verify_steps(function: PublicFunction) -> None:
             raise StepError(f"{function.name}: {value.name} {value.shape} is not known")
 
     for step in function.steps:
-        if isinstance(step, Apply):
-            for operand in step.operands:
-                use(operand)
-        if isinstance(step, Search):
-            use(step.start)
-        for target in step.targets if not isinstance(step, Search) else (step.target,):
+        for operand in step.operands:
+            use(operand)
+        for target in step.targets:
             if target.name in known:
                 raise StepError(f"{function.name}: {target.name} is made twice")
             known[target.name] = target.shape

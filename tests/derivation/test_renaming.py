@@ -21,7 +21,7 @@ from pne_sym.lowering.program import lower
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.count import count_function
 from pne_sym.program.evaluate import prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import Interpreter
 from tests import models
 from tests.derivation.renaming import all_names, renamed
 from tests.sampling import sampled
@@ -118,13 +118,8 @@ def test_with_shuffled_names_values_are_equal(name: str) -> None:
 def values(bundle: Bundle) -> dict[str, Any]:
     """What public functions give at states around home."""
     c, program, home = bundle.coordinates, bundle.program, bundle.manipulator.home
-    run = Interpreter(
-        program,
-        program.public,
-        prepare(program, bundle.derivation.parameters.values()),
-        np.array(home.q),
-        PoseLayout(c.position, c.has_quaternion),
-    )
+    prepared = prepare(program, bundle.derivation.parameters.values())
+    run = Interpreter(program, prepared, home.q)
     rng = np.random.default_rng(0)
     given = {
         "X": np.array(home.X) + 2e-3 * rng.uniform(-1.0, 1.0, (4, len(home.X))),

@@ -9,7 +9,7 @@ import pytest
 
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.evaluate import Status, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import Interpreter
 from pne_sym.program.iteration import close_loops
 from pne_sym.program.linear import solve
 from pne_sym.program.operations import OPERATIONS
@@ -89,7 +89,7 @@ def test_no_output_of_an_impossible_state_is_left() -> None:
         Argument(Value(n, s), ("2",), "given") for n, s in (("a", (2, 2)), ("b", (2,)))
     )
     made = PublicFunction("test", "Test.", (X, matrix, right), outputs, tuple(a.steps), "dynamics")
-    own = Interpreter(run.program, [made], run.prepared, run.home_q, run.layout)
+    own = Interpreter(run.program, run.prepared, run.home_q, made)
     given |= {"a": np.array([np.eye(2), np.ones((2, 2)), np.eye(2)]), "b": np.ones((3, 2))}
     assert call(own, "test", given) == [OK, SINGULAR, OK]
 
@@ -140,13 +140,12 @@ def test_poses_are_moved_as_their_rates_say(name: str) -> None:
     manipulator = models.catalogue(name)
     run, given = at_home(name)
     c = models.bundle(manipulator).coordinates
-    layout = PoseLayout(sum(n in "xyz" for n in c.pose), c.has_quaternion)
     if c.has_quaternion:
         given["X"][:, 3:7] /= np.linalg.norm(given["X"][:, 3:7], axis=1, keepdims=True)
     step, h = given["V"], 1e-6
     (rate,) = run.call("X_dot", X=given["X"], V=step).outputs
-    moved = layout.moved(given["X"], h * step) - layout.moved(given["X"], -h * step)
-    np.testing.assert_allclose(moved / (2.0 * h), rate, rtol=0, atol=1e-8)
+    ends = [run.call("retract", X=given["X"], step=s * step).outputs[0] for s in (h, -h)]
+    np.testing.assert_allclose((ends[0] - ends[1]) / (2.0 * h), rate, rtol=0, atol=1e-8)
 
 
 # ---- iteration --------------------------------------------------------------------------------

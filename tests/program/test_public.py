@@ -9,7 +9,7 @@ import pytest
 
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import Status, prepare
-from pne_sym.program.interpret import Interpreter, PoseLayout
+from pne_sym.program.interpret import Interpreter
 from pne_sym.program.public import PublicFunction
 from tests import models
 from tests.backends.c_library import Array
@@ -23,15 +23,8 @@ TOLERANCE = 1e-10
 
 def interpreter(manipulator: Manipulator) -> Interpreter:
     compiled = models.bundle(manipulator)
-    c, program = compiled.coordinates, compiled.program
-    position = sum(name in "xyz" for name in c.pose)
-    return Interpreter(
-        program,
-        program.public,
-        prepare(program, compiled.derivation.parameters.values()),
-        np.array(c.home[1]),
-        PoseLayout(position, c.has_quaternion),
-    )
+    prepared = prepare(compiled.program, compiled.derivation.parameters.values())
+    return Interpreter(compiled.program, prepared, compiled.coordinates.home[1])
 
 
 def states(manipulator: Manipulator, m: Any) -> dict[str, Array]:

@@ -26,7 +26,7 @@ def function(*steps: Step, output: Value = Y) -> PublicFunction:
 
 def test_right_steps_pass() -> None:
     verify_steps(function(GOOD))
-    verify_steps(function(Search("residual", "slope", X, Y, halving=True)))
+    verify_steps(function(Search("residual", "slope", (X,), (Y,), halving=True)))
 
 
 @pytest.mark.parametrize(
@@ -37,7 +37,7 @@ def test_right_steps_pass() -> None:
         function(Apply("negative", (Value("X", (4,)),), (Y,))),  # of another shape
         function(GOOD, GOOD),  # made twice
         function(Apply("negative", (X,), (X,)), output=X),  # an input is made
-        function(Search("residual", "slope", Z, Y, halving=True)),
+        function(Search("residual", "slope", (Z,), (Y,), halving=True)),
         function(GOOD, output=Value("Y", (2,))),
     ],
 )

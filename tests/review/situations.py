@@ -8,7 +8,7 @@ import numpy as np
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.program.evaluate import Status, evaluate, prepare
-from pne_sym.program.interpret import REST, Interpreter, PoseLayout
+from pne_sym.program.interpret import REST, Interpreter
 from pne_sym.program.iteration import close_loops
 from pne_sym.review.named import Situation
 from pne_sym.review.samples import length_of, random_parameters
@@ -55,9 +55,7 @@ class _Drawn:
         self.size = length_of({f"{n}.{n}": v for n, v in defaults.items()})
         self.prepared = prepare(bundle.program, table.values(self.parameters))
         self.home_q = np.array(c.home[1])
-        layout = PoseLayout(c.position, c.has_quaternion)
-        program = bundle.program
-        self.model = Interpreter(program, program.public, self.prepared, self.home_q, layout)
+        self.model = Interpreter(bundle.program, self.prepared, self.home_q)
 
     def situation(self) -> Situation | None:
         """The draw, where the model can be evaluated there."""
