@@ -19,9 +19,9 @@ from pne_sym.mechanics.reciprocal_wrenches import (
     completed_wrenches,
     direction,
 )
-from pne_sym.mechanics.scope import moment_directions
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.kinematics import at_home, chain_pose
+from pne_sym.model.closure import leg_residual
+from pne_sym.model.kinematics import at_home
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
@@ -131,14 +131,11 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
     if len(g.pairs) != 1:
         return False
     pose, displacements = at_home(manipulator)
-    for index in g.leg_type.indices:
-        leg = manipulator.legs[index]
-        chain = chain_pose(leg, displacements[index])
-        leg_R_platform = np.array(leg.base_frame).T @ pose.R
-        n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
-        if np.abs(n @ chain.spins).max(initial=0.0) > 1e-6:
-            return False
-    return True
+    turns = (
+        leg_residual(manipulator.legs[index], displacements[index], pose)[1][3:]
+        for index in g.leg_type.indices
+    )
+    return all(np.abs(by_q).max(initial=0.0) <= 1e-6 for by_q in turns)
 
 
 def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:

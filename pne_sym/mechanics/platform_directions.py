@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_parameters import LegParameters
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.model.kinematics import Array
+from pne_sym.model.manipulator import Leg, PlatformJoint
 from pne_sym.model.platform_kinds.interface import Direction
 from pne_sym.vector import Cross, norm
 
@@ -89,7 +92,7 @@ class PlatformDirections:
         return self.eq.give("end_p#", "platform", components, k + 1)
 
 
-def _components(direction: Direction, stated: dict[str, Any]) -> tuple[Any, ...]:
+def _components(direction: Direction, stated: Mapping[str, Any]) -> tuple[Any, ...]:
     """Components of a direction of the platform joint in the frame of its body."""
     if not direction.field:
         return unit(AXES[direction.row])
@@ -106,3 +109,38 @@ def across(leg_type: LegType) -> int:
     """The coordinate direction of the last link that is most across the platform joint's axis."""
     axes = leg_type.over_legs(lambda leg: leg.platform_joint.axis_link)
     return int(np.argmin(np.abs(axes).max(axis=0)))
+
+
+def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: Array) -> Array:
+    """Directions (k, 3) of the moments that a leg's platform joint transmits, in leg axes.
+
+    Args:
+        leg_type: of the leg.
+        leg: one of its legs.
+        last: rotation from the last link's to leg axes.
+        leg_R_platform: rotation from platform to leg axes.
+    """
+    found = [
+        np.cross(last @ in_link, leg_R_platform @ in_platform)
+        for in_link, in_platform in right_angles(leg_type, leg)
+    ]
+    return np.array(found).reshape(-1, 3)
+
+
+def right_angles(leg_type: LegType, leg: Leg) -> list[tuple[Array, Array]]:
+    """Directions of the last link and of the platform that a platform joint keeps perpendicular."""
+    end = leg.platform_joint
+    return [
+        (_direction(leg_type, end, in_link), _direction(leg_type, end, in_platform))
+        for in_link, in_platform in end.right_angles
+    ]
+
+
+def _direction(leg_type: LegType, joint: PlatformJoint, direction: Direction) -> Array:
+    """A direction of a platform joint in numbers, in the frame of its body."""
+    stated = np.ravel(getattr(joint, direction.field)).tolist() if direction.field else []
+    if not direction.across or is_coordinate(stated):
+        return np.array(_components(direction, {direction.field: stated}), dtype=float)
+    first = np.cross(stated, AXES[across(leg_type)])
+    first /= np.linalg.norm(first)
+    return first if direction.across == 1 else np.cross(stated, first)
