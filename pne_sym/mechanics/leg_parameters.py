@@ -23,9 +23,9 @@ from pne_sym.vector import ZeroVector
 Array = NDArray[np.float64]
 
 _TERMS = glossary(r"""
-b             | \mathbf b       | given
+b             | \mathbf b       | given @base
     base point of the leg
-q             | \mathbf p       | given
+q             | \mathbf p       | given @platform
     platform origin to connection point, fixed in the platform
 d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
@@ -90,8 +90,8 @@ class LegParameters:
         p = self.field("platform_point", zeros=flat)
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
-        self.base_point = self.eq.give("b", "base", b)
-        self.platform_point = self.eq.give("q", "platform", p)
+        self.base_point = self.eq.give("b", b)
+        self.platform_point = self.eq.give("q", p)
         self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
 
     def axes(self) -> None:
@@ -133,7 +133,7 @@ class LegParameters:
             components = self.field(stem, j, j - 1, zeros=zeros)
             frame, what = self.g.frame("spec", self.g.group[j - 1]), f"joint {j}"
             what = "platform joint" if last else what
-            self.g.offset[j] = self.eq.give("d_#", frame, components, j, j - 1, what)
+            self.g.offset[j] = self.eq.give("d_#", components, j, j - 1, what, frame=frame)
 
 
 def offset_of(leg_type: LegType, j: int) -> Vector3:

@@ -19,15 +19,15 @@ from pne_sym.model.platform_kinds.interface import Direction
 from pne_sym.vector import Cross, norm
 
 _TERMS = glossary(r"""
-end_axis      | \hat{\mathbf l} | given
+end_axis      | \hat{\mathbf l} | given @last
     axis of the platform joint in the last link
-end_across    | \hat{\mathbf i}_{#} | given
+end_across    | \hat{\mathbf i}_{#} | given @last
     direction # of the last link, well across that axis
-end_l#        | \hat{\mathbf l}_{#} | given
+end_l#        | \hat{\mathbf l}_{#} | given @last
     direction of the platform joint, fixed in the last link
-end_l#:across | \hat{\mathbf l}_{#} | LUMPING constant
+end_l#:across | \hat{\mathbf l}_{#} | LUMPING constant @last
     direction # across the platform joint's axis, fixed in the last link
-end_p#        | \hat{\mathbf p}_{#} | given
+end_p#        | \hat{\mathbf p}_{#} | given @platform
     direction of the platform joint, fixed in the platform
 """)
 
@@ -60,15 +60,14 @@ class PlatformDirections:
 
     def _two_across(self, axis: Any, platform: Any) -> None:
         """Two orthogonal directions across an axis that is not along a coordinate direction."""
-        last = self.g.frame("spec", self.g.group[self.g.count])
-        a = self.eq.give("end_axis", last, axis)
+        a = self.eq.give("end_axis", axis)
         k = across(self.type)
-        d = self.eq.give("end_across", last, unit(AXES[k]), "xyz"[k])
+        d = self.eq.give("end_across", unit(AXES[k]), "xyz"[k])
         w = self._platform_direction(0, platform)
         side = Cross(a, d)
-        first = self.eq("end_l#:across", side / norm(side), 1, body=last)
+        first = self.eq("end_l#:across", side / norm(side), 1)
         self.g.pairs.append((first, w))
-        self.g.pairs.append((self.eq("end_l#:across", Cross(a, first), 2, body=last), w))
+        self.g.pairs.append((self.eq("end_l#:across", Cross(a, first), 2), w))
 
     def _stated(self, name: str) -> Any:
         """Components of what the specification states of the platform joint: live or fixed."""
@@ -80,8 +79,7 @@ class PlatformDirections:
         return self.given.field("platform_joint_#", name, rule=Rule.UNIT)
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
-        last = self.g.frame("spec", self.g.group[self.g.count])
-        u = self.eq.give("end_l#", last, link, k + 1)
+        u = self.eq.give("end_l#", link, k + 1)
         self.g.pairs.append((u, self._platform_direction(k, platform)))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or AXES[k])
         self.pattern = pattern_of(
@@ -89,7 +87,7 @@ class PlatformDirections:
         )
 
     def _platform_direction(self, k: int, components: Any) -> Any:
-        return self.eq.give("end_p#", "platform", components, k + 1)
+        return self.eq.give("end_p#", components, k + 1)
 
 
 def _components(direction: Direction, stated: Mapping[str, Any]) -> tuple[Any, ...]:
