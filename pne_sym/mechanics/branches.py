@@ -10,7 +10,7 @@ import sympy as sp
 from pne_sym.derivation import Book
 from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import right_angles
+from pne_sym.mechanics.platform_directions import right_angles
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import Array, at_home, chain_pose, rotation_about
 from pne_sym.model.manipulator import Leg, Manipulator

@@ -19,7 +19,7 @@ from itertools import combinations, product
 import numpy as np
 
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import moment_directions
+from pne_sym.mechanics.platform_directions import moment_directions
 from pne_sym.model.closure import least_norm, leg_residual
 from pne_sym.model.kinematics import (
     TASK_SPACES,

@@ -33,13 +33,13 @@ D_#_%     | \mathcal M_{#%}          | FREEDOM | Sec. 2.2, joint table
     inertia of joint % along joint #
 D_#_%:own | \mathcal M_{#%}          | FREEDOM | Sec. 2.2, joint table
     inertia of joint #
-hc_#      | \mathbf h^c_{#}          | DEFINITION
+hc_#      | \mathbf h^c_{#}          | DEFINITION @link
     first moment of the links from # outwards
-Jc_#      | \mathbf J^c_{#}          | DEFINITION symmetric
+Jc_#      | \mathbf J^c_{#}          | DEFINITION symmetric @link
     inertia tensor of the links from # outwards about joint #%
-P_c_#     | \boldsymbol\Pi_{#}       | NEWTON
+P_c_#     | \boldsymbol\Pi_{#}       | NEWTON @link
     force that accelerates joint #, per unit
-L_c_#     | \boldsymbol\Lambda_{#}   | EULER
+L_c_#     | \boldsymbol\Lambda_{#}   | EULER @link
     moment about joint % that accelerates joint #, per unit
 L_c_#_%   | \boldsymbol\Lambda_{#,%} | EULER
     moment about joint % that accelerates joint #, per unit
@@ -93,22 +93,16 @@ class CompositeWriter:
             opens = g.group[k + 1] != group
             parts.append(self._moved(beyond, self.chain.spans[group]) if opens else beyond)
         own = self.bodies.get(k)
-        if own is not None:
-            body = (
-                _Body(sp.S.Zero, ZeroVector, own.inertia)
-                if own.at_tip
-                else _Body(own.mass, own.first_moment, own.inertia)
-            )
-            parts.append(body if own.at_tip else self._moved(body, self.chain.reach(k)))
+        if own is not None and own.at_tip:
+            parts.append(_Body(sp.S.Zero, ZeroVector, own.inertia))
+        elif own is not None:
+            body = _Body(own.mass, own.first_moment, own.inertia)
+            parts.append(self._moved(body, self.chain.reach(k)))
         mass = sp.Add(*(p.mass for p in parts))
-        moment, tensor = (
-            vector_sum(p.first_moment for p in parts),
-            tensor_sum(p.inertia for p in parts),
-        )
-        moment = self.eq.named("hc_#", moment, k, body=g.frame("axes", group))
+        moment = self.eq.named("hc_#", vector_sum(p.first_moment for p in parts), k)
+        tensor = tensor_sum(p.inertia for p in parts)
         if k == group:
-            last = self._but_the_last()
-            tensor = self.eq.named("Jc_#", tensor, k, last, body=g.frame("axes", k))
+            tensor = self.eq.named("Jc_#", tensor, k, self._but_the_last())
         return _Body(mass, moment, tensor)
 
     def _moved(self, body: _Body, arm: Any) -> _Body:
@@ -135,11 +129,10 @@ class CompositeWriter:
         g, spin, slide = self.g, self.g.spin(k), self.g.slide(k)
         force = Cross(spin, body.first_moment) + body.mass * slide
         moment = body.inertia @ spin + Cross(body.first_moment, slide)
-        frame = g.frame("axes", g.group[k])
-        force = self.eq.named("P_c_#", force, k, body=frame)
+        force = self.eq.named("P_c_#", force, k)
         if not g.group[k]:
             return force, ZeroVector
-        return force, self.eq.named("L_c_#", moment, k, g.group[k], body=frame)
+        return force, self.eq.named("L_c_#", moment, k, g.group[k])
 
     def _carried(self, k: int, group: int, force: Any, moment: Any) -> Any:
         """The same moment about the origin of a group further in."""

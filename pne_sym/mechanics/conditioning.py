@@ -13,7 +13,7 @@ from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Dot, sum_over_legs, vector_sum
 
 _TERMS = glossary(r"""
-b_c       | \mathbf b_c | LUMPING constant
+b_c       | \mathbf b_c | LUMPING constant @platform
     centroid of the platform points
 spread    | \ell_b      | LUMPING constant
     rms distance of the platform points from their centroid
@@ -31,7 +31,7 @@ def write_lengths(book: Book, legs: Sequence[LegGeometry]) -> None:
         return [sum_over_legs(of(g), g.leg_type.name) / count for g in legs]
 
     eq = Writer(book, None, _TERMS)
-    centroid = eq("b_c", vector_sum(mean(lambda g: g.platform_point)), body="platform")
+    centroid = eq("b_c", vector_sum(mean(lambda g: g.platform_point)))
 
     def squared(g: LegGeometry) -> Any:
         arm = g.platform_point - centroid

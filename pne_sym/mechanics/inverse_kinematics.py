@@ -76,7 +76,7 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
 
 _ALONG_X, _ALONG_Y = (tuple(map(sp.Integer, axis)) for axis in ((1, 0, 0), (0, 1, 0)))
 _TERMS = glossary(r"""
-x_#              | \mathbf S_{#}         | GEOMETRY
+x_#              | \mathbf S_{#}         | GEOMETRY @before
     from the origin of joint # to the connection point
 y_#_extra        | y_{#}                 | given DISPLACEMENT | U
     extra coordinate: displacement of joint #
@@ -90,13 +90,13 @@ s_#              | \sin\xi_{#}     | LOOP_CLOSURE
     sine of the angle of joint # from its reference direction
 branch_#         | \sigma_{#}            | given constant
     assembly branch of joint #: +1 or -1, as at home
-ref_#            | \hat{\mathbf x}^0_{#} | given
+ref_#            | \hat{\mathbf x}^0_{#} | given @turn
     reference direction of the angle of joint #, fixed in link %
-across_#         | \hat{\mathbf y}^0_{#} | given
+across_#         | \hat{\mathbf y}^0_{#} | given @turn
     across the reference direction of joint #, fixed in link %
-link_x_#         | \hat{\mathbf x}_{#}   | given
+link_x_#         | \hat{\mathbf x}_{#}   | given @link
     direction across axis #, fixed in link #
-link_y_#         | \hat{\mathbf y}_{#}   | given
+link_y_#         | \hat{\mathbf y}_{#}   | given @link
     direction across axis #, fixed in link #
 un_#             | l^x_{#}               | LUMPING
     component along the x axis of link # of the direction fixed in it
@@ -126,7 +126,7 @@ root_#:amplitude | K_{#}                 | LOOP_CLOSURE
     amplitude, the length across axis #, with the sign of the branch
 root_#:nearest   | K_{#}                 | LOOP_CLOSURE
     amplitude: off the manifold the nearest angle is taken
-xi_#             | \mathbf S^r_{#}       | LOOP_CLOSURE RESOLVED
+xi_#             | \mathbf S^r_{#}       | LOOP_CLOSURE RESOLVED @link
     the vector from joint # to the connection point, resolved along link #
 from_centre_#    | \mathbf S'_{#}        | GEOMETRY
     from the centre at zero displacement to the connection point
@@ -195,7 +195,7 @@ class _Solver:
         if x != before or g.is_extra(j) or g.is_unseen(j):
             self.resolved = None
         if j < g.count:
-            x = self.eq.named("x_#", x, j + 1, body=g.frame("axes", g.group[j]))
+            x = self.eq.named("x_#", x, j + 1)
         return x
 
     def _turn(self, j: int, x: Vector) -> Vector:
@@ -215,16 +215,14 @@ class _Solver:
 
     def _turn_axes(self, j: int) -> tuple[Vector, Vector]:
         """x and y axes of the turn frame of joint j (fixed in link j-1)."""
-        turn = self.g.frame("turn", j)
-        x = self.eq.give("ref_#", turn, _ALONG_X, j, j - 1)
-        return x, self.eq.give("across_#", turn, _ALONG_Y, j, j - 1)
+        x = self.eq.give("ref_#", _ALONG_X, j, j - 1)
+        return x, self.eq.give("across_#", _ALONG_Y, j, j - 1)
 
     def _link_axes(self, j: int) -> tuple[Vector, Vector]:
         """x and y axes of the canonical frame that joint j opens."""
         if j not in self.link_axes:
-            frame = self.g.frame("axes", j)
-            x = self.eq.give("link_x_#", frame, _ALONG_X, j)
-            self.link_axes[j] = x, self.eq.give("link_y_#", frame, _ALONG_Y, j)
+            x = self.eq.give("link_x_#", _ALONG_X, j)
+            self.link_axes[j] = x, self.eq.give("link_y_#", _ALONG_Y, j)
         return self.link_axes[j]
 
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
@@ -261,9 +259,7 @@ class _Solver:
         if self.invariants.goes_on(j):
             return x
         n, m = self._link_axes(j)
-        resolved: Vector = self.eq(
-            "xi_#", parts[0] * n + parts[1] * m + axial * e, j, body=g.frame("axes", j)
-        )
+        resolved: Vector = self.eq("xi_#", parts[0] * n + parts[1] * m + axial * e, j)
         return resolved
 
     def _in_turning_plane(self, j: int, x: Vector, *, named: bool) -> tuple[Any, Any, Any]:

@@ -26,23 +26,23 @@ from pne_sym.vector import (
 )
 
 _TERMS = glossary(r"""
-u_1        | \mathbf u_1              | RATE | Eq. 23
+u_1        | \mathbf u_1              | RATE @base | Eq. 23
     centripetal acceleration of the connection point
-a_p        | \mathbf a_p              | RATE COLLECTED_ACCELERATION | Eq. 23
+a_p        | \mathbf a_p              | RATE COLLECTED_ACCELERATION @base | Eq. 23
     acceleration of the connection point without its centripetal part
-S_ddot     | \ddot{\mathbf S}         | RATE POINT_ACCELERATION | Eq. 23
+S_ddot     | \ddot{\mathbf S}         | RATE POINT_ACCELERATION @base | Eq. 23
     acceleration of the connection point
-zeta_#     | \boldsymbol\zeta_{#}     | RATE
+zeta_#     | \boldsymbol\zeta_{#}     | RATE @link
     angular acceleration of link # from the turning of axis #
-beta_#     | \boldsymbol\beta_{#}     | RATE
+beta_#     | \boldsymbol\beta_{#}     | RATE @link
     angular acceleration of link # at zero joint accelerations
-bias       | \mathfrak b              | RATE BIAS | Sec. 2.2
+bias       | \mathfrak b              | RATE BIAS @tip | Sec. 2.2
     acceleration of the connection point at zero joint accelerations
 ydd_#      | \ddot y_{#}              | given JOINT_ACCELERATION | U/s^2
     acceleration of extra joint #
-rel        | \ddot{\mathbf S}' ; \mathbf E | RATE
+rel        | \ddot{\mathbf S}' ; \mathbf E | RATE @tip
     acceleration of the connection point left to the joint accelerations
-nd_m#      | \dot{\mathbf n}_{m#}     | RATE
+nd_m#      | \dot{\mathbf n}_{m#}     | RATE @tip
     rate of moment direction #
 nu_#       | \nu_{#}                  | RATE | Sec. 2.2, joint table
     bias of the angular acceleration along moment direction #
@@ -111,11 +111,11 @@ def write_joint_accelerations(
     forms: tuple[Vector, ...] = ()
     if rotates:
         q = g.platform_point
-        u_1 = eq("u_1", Cross(p.omega, Cross(p.omega, q)), body="base", forms=(p.spin @ q,))
+        u_1 = eq("u_1", Cross(p.omega, Cross(p.omega, q)), forms=(p.spin @ q,))
         forms = (p.t_ddot + p.tensor @ q,)
-    a_p = eq("a_p", p.t_ddot + Cross(p.alpha, g.platform_point), body="base")
+    a_p = eq("a_p", p.t_ddot + Cross(p.alpha, g.platform_point))
     collection = Collection(a_p, [a_p], {}, rates.named)
-    S_ddot = eq("S_ddot", a_p + u_1, body="base", forms=forms)
+    S_ddot = eq("S_ddot", a_p + u_1, forms=forms)
     collection.known[S_ddot] = linear_form(a_p + u_1, [a_p], {})
     return _Writer(book, platform, rates, collection).write(S_ddot)
 
@@ -143,7 +143,7 @@ class _Writer:
             target = target - ydd[j] * rates.v[j]
             turning = turning - ydd[j] * g.spin(j)
         if target != S_ddot:
-            target = self.eq.collected("rel", target, body=self.chain.tip_frame)
+            target = self.eq.collected("rel", target)
         nu = self._orientation_bias(bias.beta)
         return JointAccelerations(
             **vars(rates),
@@ -177,10 +177,10 @@ class _Writer:
         forms: list[Vector] = []
         for j, span in self.chain.spans.items():
             if j:
-                previous, frame = g.group[j - 1], g.frame("axes", j)
+                previous = g.group[j - 1]
                 turned = rates.qd[j] * Cross(rates.omega[previous], g.spin(j))
-                coriolis[j] = self.eq.named("zeta_#", turned, j, body=frame)
-                beta[j] = self.eq.named("beta_#", beta[previous] + coriolis[j], j, body=frame)
+                coriolis[j] = self.eq.named("zeta_#", turned, j)
+                beta[j] = self.eq.named("beta_#", beta[previous] + coriolis[j], j)
             omega = rates.omega[j]
             sliding = Cross(omega, rates.slide[j]) * 2
             terms.extend((Cross(beta[j], span) + Cross(omega, Cross(omega, span)), sliding))
@@ -189,7 +189,7 @@ class _Writer:
         total, seen = vector_sum(terms), (vector_sum(forms),)
         point: Vector = ZeroVector
         if total != ZeroVector:
-            point = self.eq("bias", total, body=self.chain.tip_frame, forms=seen)
+            point = self.eq("bias", total, forms=seen)
         return _Bias(point, coriolis, beta)
 
     def _orientation_bias(self, beta: dict[int, Vector]) -> list[Any]:
@@ -198,6 +198,6 @@ class _Writer:
         omega, found = self.rates.omega[last], []
         for k, ((link, platform), n) in enumerate(zip(self.g.pairs, self.rates.n, strict=True), 1):
             turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
-            rate = self.eq.named("nd_m#", turning, k, body=self.chain.tip_frame)
+            rate = self.eq.named("nd_m#", turning, k)
             found.append(self.eq("nu_#", Dot(rate, p.omega - omega) - Dot(n, beta[last]), k))
         return found

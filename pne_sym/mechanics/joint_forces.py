@@ -21,7 +21,6 @@ from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.live import value_at
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.effects import Friction
-from pne_sym.model.leg_types import a_leg
 from pne_sym.model.manipulator import Joint
 from pne_sym.vector import Dot, Vector, ZeroVector
 
@@ -30,9 +29,9 @@ vs2_%        | \varpi_{#}               | LUMPING constant
     square of the velocity scale of &
 friction_#   | \tau^f_{#}               | FRICTION | beyond the paper
     friction in joint #, against its rate
-omega_end    | \boldsymbol\omega^r      | RATE     | beyond the paper
+omega_end    | \boldsymbol\omega^r      | RATE @tip | beyond the paper
     angular velocity of the platform relative to the last link
-friction_end | \mathbf m^f              | FRICTION | beyond the paper
+friction_end | \mathbf m^f              | FRICTION @tip | beyond the paper
     moment of the platform joint's friction on the last link
 spring_#     | \tau^s_{#}               | SPRING   | beyond the paper
     force of the spring at joint #, against its displacement
@@ -144,11 +143,9 @@ def write_joint_forces(
     joints, end = g.leg_type.model.joints, g.leg_type.model.platform_joint.friction
     if not (end or any(j.friction or j.spring or j.actuator for j in joints)):
         return JointForces(motion.qd, motion.qdd)
-    title = f"Forces in the joints of {a_leg(g.leg_type.architecture)}"
-    book.chapter(
-        f"{g.leg_type.name}-J", title, _text(joints, end, coupled=coupled), g.leg_type.name
-    )
     writer = _Writer(book, g, coupled=coupled)
+    text = _text(joints, end, coupled=coupled)
+    writer.eq.chapter("J", "Forces in the joints of &", text)
     own = {j: writer.joint(j, joint, motion.qd[j], q) for j, joint in enumerate(joints, 1)}
     if not end or turning == ZeroVector:
         return JointForces(motion.qd, motion.qdd, own)
@@ -201,10 +198,9 @@ class _Writer:
 
     def end_friction(self, turning: Vector) -> tuple[Vector, Vector]:
         """Turning of the platform against the last link, and the moment on that link."""
-        frame = self.g.frame("axes", self.g.group[self.g.count])
-        relative = self.eq("omega_end", turning, body=frame)
+        relative = self.eq("omega_end", turning)
         law = self._law(END, Dot(relative, relative), "end_")
-        return relative, self.eq("friction_end", law * relative, body=frame)
+        return relative, self.eq("friction_end", law * relative)
 
     def _spring(self, at: Place, j: int, displacement: Any) -> tuple[Any, Any]:
         """Force of the spring against the displacement of joint j, and its energy."""

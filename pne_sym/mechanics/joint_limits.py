@@ -15,7 +15,6 @@ from pne_sym.derivation import Book, Output, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.live import note, of_legs
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.leg_types import a_leg
 
 _TERMS = glossary(r"""
 middle_#   | q^m_{#}          | LUMPING constant
@@ -49,10 +48,8 @@ def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequ
     if not limited:
         return
     wraps = {j: g.kind(j).is_hinge and not g.is_extra(j) for j in limited}
-    title = f"Limits of {a_leg(g.leg_type.architecture)}"
-    text = _TEXT + _HINGES * any(wraps.values())
-    book.chapter(f"{g.leg_type.name}-L", title, text, g.leg_type.name)
     write = Writer(book, g, _TERMS)
+    write.chapter("L", "Limits of &", _TEXT + _HINGES * any(wraps.values()))
     for j in limited:
         least, largest = _limits(book, g, j)
         middle = write("middle_#", (least + largest) / 2, j)

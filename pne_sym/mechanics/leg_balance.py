@@ -18,9 +18,9 @@ from pne_sym.mechanics.terms import glossary
 from pne_sym.vector import Cross, Dot, VectorSymbol, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
-N_#     | \mathbf N_{#} ; \boldsymbol\Xi_{#}                | EULER | Sec. 2.5, step 1.3
+N_#     | \mathbf N_{#} ; \boldsymbol\Xi_{#}                | EULER @link | Sec. 2.5, step 1.3
     moment about joint # of the links from # outwards, the force at the connection point left out
-T_#     | \mathbf f^{\Sigma}_{#} ; \boldsymbol{\mathcal F}_{#} | NEWTON
+T_#     | \mathbf f^{\Sigma}_{#} ; \boldsymbol{\mathcal F}_{#} | NEWTON @link
     inertia force of the links from # outwards, the last link left out
 Gamma_# | \Gamma_{#} ; \boldsymbol\gamma_{#}                | FREEDOM | Sec. 2.2, joint table
     % axis # of the distal links' inertia and weight&
@@ -47,7 +47,7 @@ class BalanceWriter:
             members = [j for j in range(1, g.count + 1) if g.group[j] == group]
             moment = self._moment(group, members, force, moment)
             for j in reversed(members):
-                force = self._force(j, force, g.frame("axes", group))
+                force = self._force(j, force)
                 if j != group:
                     gamma[j] = self._along(j, Dot(g.slide(j), force), inertia)
             if group:
@@ -74,18 +74,18 @@ class BalanceWriter:
                 *(Cross(self.chain.reach(j), own[j]) for j in members if j in own),
             )
         )
-        return self._named("N_#", total, group, self.g.frame("axes", group))
+        return self._named("N_#", total, group)
 
-    def _force(self, j: int, outer: Any, frame: str) -> Any:
+    def _force(self, j: int, outer: Any) -> Any:
         """Inertia force of the links from j outwards."""
         own = self.found.force.get(j, ZeroVector)
-        return self._named("T_#", vector_sum((own, outer)), j, frame)
+        return self._named("T_#", vector_sum((own, outer)), j)
 
-    def _named(self, stem: str, total: Any, j: int, frame: str) -> Any:
+    def _named(self, stem: str, total: Any, j: int) -> Any:
         if isinstance(total, VectorSymbol) or total == ZeroVector:
             return total
         collected = not self.g.composite
-        return self.eq.collected(stem, total, j, body=frame, collected=collected)
+        return self.eq.collected(stem, total, j, collected=collected)
 
     def _along(self, j: int, component: Any, inertia: dict[tuple[int, int], Any]) -> Any:
         """Gamma_j, from the component of inertia and weight along the degree of freedom."""

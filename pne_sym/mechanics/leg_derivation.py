@@ -31,10 +31,10 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Vector, vector_sum
 
 _TERMS = glossary(r"""
-S             | \mathbf S     | GEOMETRY POINT | Sec. 2.5, step 1.1
+S             | \mathbf S     | GEOMETRY POINT @base | Sec. 2.5, step 1.1
     from the base point to the connection point
-x_1           | \mathbf S_{1} | GEOMETRY
-    from the origin of joint 1 to the connection point
+x_#           | \mathbf S_{#} | GEOMETRY @before
+    from the origin of joint # to the connection point
 sigma_closure | \sigma_{g}    | given constant
     sign of the determinant of the loop closure's derivative by the iterated displacements
 """)
@@ -75,8 +75,8 @@ def derive_leg(
     leg_type: LegType,
 ) -> Leg:
     """The chapters of a leg type."""
-    prefix, title = leg_type.name, leg_type.architecture
-    book.chapter(f"{prefix}-G", f"Geometry and inertia of {a_leg(title)}", "", prefix)
+    title = f"Geometry and inertia of {a_leg(leg_type.architecture)}"
+    book.chapter(f"{leg_type.name}-G", title, "", leg_type.name)
     g = build_geometry(book, leg_type, space.planar)
     g = with_size(book, g, home_lengths(manipulator, leg_type))
     bodies = introduce_bodies(book, g, space.planar)
@@ -87,7 +87,7 @@ def derive_leg(
     completion = completion_of(manipulator, g, planar=space.planar)
     pure = force_vanishes(manipulator, g)
     g = replace(g, composite=composite, completion=completion, pure_moment=pure)
-    book.chapter(f"{prefix}-K", f"Inverse kinematics of {a_leg(title)}", _INVERSE, prefix)
+    Writer(book, g, _TERMS).chapter("K", "Inverse kinematics of &", _INVERSE)
     inverse = _inverse_kinematics(book, manipulator, space, platform, g)
     _tell_rotations(book, g, inverse)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
@@ -171,8 +171,8 @@ def _inverse_kinematics(
 def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[Vector, Vector]:
     """The connection point from the base point, and from the origin of joint 1."""
     eq = Writer(book, g, _TERMS)
-    S = eq("S", vector_sum((platform.t, g.platform_point, -g.base_point)), body="base")
-    return S, eq.named("x_1", S - g.offset[1], body=g.frame("axes", 0))
+    S = eq("S", vector_sum((platform.t, g.platform_point, -g.base_point)))
+    return S, eq.named("x_#", S - g.offset[1], 1)
 
 
 def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> LegTypeInfo:

@@ -25,28 +25,27 @@ from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
 from pne_sym.mechanics.links import LinkBody
 from pne_sym.mechanics.terms import glossary
-from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
-G      | \mathbf G ; \boldsymbol{\mathcal G} | RECIPROCITY | Sec. 2.3
+G      | \mathbf G ; \boldsymbol{\mathcal G} | RECIPROCITY @tip | Sec. 2.3
     force at the connection point that balances the leg's inertia and weight along
     all degrees of freedom
 G_m#   | G_{m#} ; \boldsymbol{\mathcal G}_{m#} | RECIPROCITY | Sec. 2.2, joint table
     moment along moment direction # that balances the leg's inertia and weight along
     all degrees of freedom
-G_m    | \mathbf G_m ; \boldsymbol{\mathcal G}_m | RECIPROCITY | Sec. 2.2, joint table
+G_m    | \mathbf G_m ; \boldsymbol{\mathcal G}_m | RECIPROCITY @tip | Sec. 2.2, joint table
     moment at the connection point that balances the leg's inertia and weight along
     all degrees of freedom
-c      | \mathbf c ; \boldsymbol{\mathcal C} | REDUCTION | Eq. 3
+c      | \mathbf c ; \boldsymbol{\mathcal C} | REDUCTION @tip | Eq. 3
     leg force on the platform without actuation and without the mass at the connection point
-c_m    | \mathbf c_m ; \boldsymbol{\mathcal C}_m | REDUCTION | Eq. 3
+c_m    | \mathbf c_m ; \boldsymbol{\mathcal C}_m | REDUCTION @tip | Eq. 3
     moment of the leg on the platform without actuation
-Q      | \mathbf Q   | RULES LEG_INERTIA symmetric | Eq. 4
+Q      | \mathbf Q   | RULES LEG_INERTIA symmetric @tip | Eq. 4
     inertia of the leg at the connection point, without the mass gathered there
-U      | \mathbf U   | RULES LEG_BIAS | Eq. 4
+U      | \mathbf U   | RULES LEG_BIAS @tip | Eq. 4
     velocity and gravity terms of the leg force
-c_true | \mathbf c^* | NEWTON | Eq. 3
+c_true | \mathbf c^* | NEWTON @tip | Eq. 3
     leg force on the platform without actuation, the last link's mass included
 P_#    | P_{#} ; \mathbf M_{yt,#} | FREEDOM | Eqs. 6, 7
     inertia and weight of the leg along the extra degree of freedom of joint #
@@ -127,16 +126,11 @@ class DynamicsWriter:
         self.links, self.forces = links, forces
         self.g: LegGeometry = links.g
         self.motion: LegMotion = links.motion
-        self.frame = links.motion.chain.tip_frame
-        self.book = links.book
-        self.eq = LinearWriter(self.book, self.g, _TERMS, self.motion.collection)
+        self.eq = LinearWriter(links.book, self.g, _TERMS, self.motion.collection)
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
-        of = self.g.leg_type
-        self.book.chapter(
-            f"{of.name}-N", f"Newton-Euler of {a_leg(of.architecture)}", self._text(), of.name
-        )
+        self.eq.chapter("N", "Newton-Euler of &", self._text())
         found = self.links.forces()
         gamma = BalanceWriter(self.links, found, self.forces).write()
         G, G_m = self._force_balance(gamma), self._moment_balance(gamma)
@@ -146,7 +140,7 @@ class DynamicsWriter:
         moment = self._named("c_m", -(G_m + self.forces.end))
         U = ZeroVector
         if form.remainder != ZeroVector:
-            U = self.eq("U", -form.remainder, body=self.frame)
+            U = self.eq("U", -form.remainder)
         return LegDynamics(
             bodies=self.links.bodies,
             tip_mass=found.tip_mass,
@@ -172,7 +166,7 @@ class DynamicsWriter:
         """A vector at the connection point, where there is any."""
         if value == ZeroVector:
             return ZeroVector
-        return self.eq.collected(stem, value, body=self.frame)
+        return self.eq.collected(stem, value)
 
     def _force_balance(self, gamma: dict[int, Any]) -> Any:
         """Force at the connection point, from the coefficients along the degrees of freedom."""
@@ -193,13 +187,13 @@ class DynamicsWriter:
         a_p = self.motion.a_p
         if a_p not in form.coefficients:
             return ZeroTensor
-        return self.eq("Q", -form.coefficients[a_p], body=self.frame)
+        return self.eq("Q", -form.coefficients[a_p])
 
     def _true_force(self, force: Any, found: LinkForces) -> Any:
         """The leg's force with the mass at the tip."""
         if found.tip_force == ZeroVector:
             return force
-        return self.eq("c_true", force - found.tip_force, body=self.frame)
+        return self.eq("c_true", force - found.tip_force)
 
     def _extra_row(self, j: int, gamma: dict[int, Any], G: Any, G_m: Any) -> tuple[Any, LinearForm]:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""

@@ -31,9 +31,9 @@ Array = NDArray[np.float64]
 _TERMS = glossary(r"""
 e_#           | \mathbf e_{#}   | given
     axis of joint #
-z_#           | \hat{\mathbf z}_{#} | given
+z_#           | \hat{\mathbf z}_{#} | given @own
     axis of group #
-l_#           | \hat{\mathbf d}_{#} | given
+l_#           | \hat{\mathbf d}_{#} | given @own
     direction of interest in group #
 n%_#_part     | \hat{\mathbf n}'_{#} | GEOMETRY constant
     part of the direction perpendicular to axis #
@@ -41,11 +41,11 @@ n%_#          | \hat{\mathbf n}_{#} | GEOMETRY constant
     canonical x axis of group #
 z0_#          | \mathbf e_{#}   | given
     axis of joint #, fixed in link %
-k%_#          | \hat{\mathbf k}_{%#} | given
+k%_#          | \hat{\mathbf k}_{%#} | given @before
     axis % of group &
-aside_#       | \hat{\mathbf a}'_{#} | GEOMETRY constant
+aside_#       | \hat{\mathbf a}'_{#} | GEOMETRY constant @before
     direction across axis #
-reference_#   | \hat{\mathbf a}_{#} | GEOMETRY constant
+reference_#   | \hat{\mathbf a}_{#} | GEOMETRY constant @before
     reference direction of the angle of joint #
 l0_#          | \hat{\mathbf d}^0_{#} | given
     direction of interest of group # at zero displacement
@@ -176,9 +176,8 @@ class _Frames:
         if exact:
             self.g.exact_frames.add(group)
             return matrix, None
-        frame = self.g.frame("spec", group)
-        z_vector = self.eq.give("z_#", frame, z, group)
-        direction = self.eq.give("l_#", frame, components, group)
+        z_vector = self.eq.give("z_#", z, group)
+        direction = self.eq.give("l_#", components, group)
         x_vector = self._perpendicular_unit(group, direction, z_vector)
         self.g.x_axis[group] = x_vector
         return matrix, (x_vector, Cross(z_vector, x_vector), z_vector)
@@ -237,14 +236,15 @@ class _Frames:
     def _general_turn(self, j: int, previous: int, turn: Array, tilt: int) -> None:
         """Turn frame and zero angle from live axes."""
         g, frame = self.g, self.g.frame("spec", previous)
-        axis = self.eq.give("z0_#", frame, self.spec[j], j, j - 1)
-        before = g.frame("axes", previous)
-        k = self.eq.give("k%_#", before, unit(AXES[tilt]), j, tilt, previous)
-        across = self.eq("aside_#", Cross(k, axis), j, body=before)
-        reference = self.eq("reference_#", across / norm(across), j, body=before)
+        axis = self.eq.give("z0_#", self.spec[j], j, j - 1, frame=frame)
+        k = self.eq.give("k%_#", unit(AXES[tilt]), j, tilt, previous)
+        across = self.eq("aside_#", Cross(k, axis), j)
+        reference = self.eq("reference_#", across / norm(across), j)
         axes = reference, Cross(axis, reference), axis
-        self.book.frames.append(Frame(g.frame("turn", j), before, pattern_of(turn), axes=axes))
-        direction = self.eq.give("l0_#", frame, self.choice[j], j)
+        self.book.frames.append(
+            Frame(g.frame("turn", j), g.frame("axes", previous), pattern_of(turn), axes=axes)
+        )
+        direction = self.eq.give("l0_#", self.choice[j], j, frame=frame)
         x_zero = self._perpendicular_unit(j, direction, axis, zero="0", frame=frame)
         g.zero_turn[j] = (
             self.eq("c0_#", Dot(reference, x_zero), j),
@@ -279,7 +279,7 @@ class _Frames:
             frame, components = self.g.frame("spec", group), self.spec[j]
         else:
             frame, components = self.g.frame("axes", group), pattern
-        self.g.e[j] = self.eq.give("e_#", frame, components, j)
+        self.g.e[j] = self.eq.give("e_#", components, j, frame=frame)
 
 
 def _reference(local: Array) -> tuple[Array, int]:

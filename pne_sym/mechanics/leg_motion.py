@@ -18,19 +18,18 @@ from pne_sym.mechanics.leg_rates import RateWriter
 from pne_sym.mechanics.linear_writer import LinearWriter
 from pne_sym.mechanics.moving_base import carried_leg
 from pne_sym.mechanics.platform_motion import PlatformMotion
-from pne_sym.mechanics.terms import glossary
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
-from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import Cross, Skew, Vector, VectorSymbol, ZeroTensor, ZeroVector, vector_sum
 
 _TERMS = glossary(r"""
-alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | RATE
+alpha_#    | \boldsymbol\alpha_{#} ; \boldsymbol\Omega_{#} | RATE @link
     angular acceleration of link #
-B_#        | \mathbf B_{#}            | DEFINITION
+B_#        | \mathbf B_{#}            | DEFINITION @link
     acceleration tensor of link #
-B_#_o      | \mathbf B^{\circ}_{#}    | DEFINITION
+B_#_o      | \mathbf B^{\circ}_{#}    | DEFINITION @link
     remainder of the acceleration tensor of link #
-a_o_#      | \mathbf a_{o#} ; \boldsymbol\Theta_{o#} | RATE
+a_o_#      | \mathbf a_{o#} ; \boldsymbol\Theta_{o#} | RATE @before
     acceleration of the origin of joint #
 """)
 _TEXT = (
@@ -93,11 +92,10 @@ def write_motion(
     inverse: InverseKinematics,
 ) -> LegMotion:
     """The chapters on rates and accelerations of a leg."""
-    rates, of = RateWriter(book, g, platform, space, inverse).write(), g.leg_type
+    rates = RateWriter(book, g, platform, space, inverse).write()
     text = _TEXT + (_REMAINDERS if g.composite else _COLLECTED)
     also = _other_accelerations(rates.chain.extras, moments=bool(g.pairs and space.rotates))
-    title = f"Accelerations of {a_leg(of.architecture)}"
-    book.chapter(f"{of.name}-A", title, text + also + _TENSOR, of.name)
+    Writer(book, g, _TERMS).chapter("A", "Accelerations of &", text + also + _TENSOR)
     joints = write_joint_accelerations(book, platform, rates, rotates=space.rotates)
     base, origin = GroupMotion(ZeroVector, ZeroVector, (ZeroTensor, ZeroTensor)), ZeroVector
     if platform.base:
@@ -129,18 +127,17 @@ class _Writer:
     def _group(self, j: int, previous: Vector) -> GroupMotion:
         """Of the links that joint j turns."""
         g, joints = self.g, self.joints
-        frame, is_last = g.frame("axes", j), j == self.chain.last
+        is_last = j == self.chain.last
         alpha = self.eq.collected(
             "alpha_#",
             previous + joints.qdd[j] * g.spin(j) + joints.coriolis[j],
             j,
-            body=frame,
             collected=not g.composite or is_last,
             accelerated=self._of_joints() if g.composite and is_last else None,
         )
         rest, spin = joints.known[alpha].remainder, joints.spin[j]
-        tensor = self.eq("B_#", Skew(alpha) + spin, j, body=frame)
-        at_rest = self.eq("B_#_o", Skew(rest) + spin, j, body=frame)
+        tensor = self.eq("B_#", Skew(alpha) + spin, j)
+        at_rest = self.eq("B_#_o", Skew(rest) + spin, j)
         return GroupMotion(joints.omega[j], alpha, (tensor, at_rest))
 
     def _of_joints(self) -> Vector:
@@ -161,7 +158,6 @@ class _Writer:
                     "a_o_#",
                     value,
                     j,
-                    body=self.g.frame("axes", previous),
                     forms=(form,),
                     rest_forms=(rest,),
                     collected=not self.g.composite,

@@ -13,7 +13,7 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Dot, ZeroVector
 
 _TERMS = glossary(r"""
-residual | \mathbf S_r | LOOP_CLOSURE
+residual | \mathbf S_r | LOOP_CLOSURE @tip
     from the connection point as the links reach it to the platform's
 """)
 
@@ -45,7 +45,7 @@ def starts(manipulator: Manipulator) -> list[int]:
 def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
     """Misfit of the loop closure and its derivative by the joint displacements."""
     g, motion, name = leg.g, leg.motion, leg.name
-    residual = Writer(book, g, _TERMS)("residual", motion.residual, body=frame)
+    residual = Writer(book, g, _TERMS)("residual", motion.residual)
     joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
     axes = range(2 if space.planar else 3)
     rows = tuple(range(g.leg_type.count))

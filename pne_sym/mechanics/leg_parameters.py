@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, Unpack
 
 import numpy as np
@@ -10,21 +11,21 @@ from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
-from pne_sym.mechanics.directions import AXES, unit
+from pne_sym.mechanics.directions import unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.live import Demands, note, of_legs
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, filled, glossary
-from pne_sym.model.kinematics import rotation_about
+from pne_sym.model.kinematics import chain_pose
 from pne_sym.model.manipulator import Vector3
 from pne_sym.vector import ZeroVector
 
 Array = NDArray[np.float64]
 
 _TERMS = glossary(r"""
-b             | \mathbf b       | given
+b             | \mathbf b       | given @base
     base point of the leg
-q             | \mathbf p       | given
+q             | \mathbf p       | given @platform
     platform origin to connection point, fixed in the platform
 d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
@@ -89,8 +90,8 @@ class LegParameters:
         p = self.field("platform_point", zeros=flat)
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
-        self.base_point = self.eq.give("b", "base", b)
-        self.platform_point = self.eq.give("q", "platform", p)
+        self.base_point = self.eq.give("b", b)
+        self.platform_point = self.eq.give("q", p)
         self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
 
     def axes(self) -> None:
@@ -110,26 +111,15 @@ class LegParameters:
                 g.pitch[j] = note(self.book, pitch, rf"\kappa_{{{j}}}", what)
             group = j if g.turns(j) else group
             g.group[j] = group
-        g.axes_at.extend(self._axes_with(extra) for extra in self._extra_draws())
+        g.axes_at.extend(self._axes_at())
         self.book.parameters.relations.extend(axis_relations(self.type))
 
-    def _extra_draws(self) -> list[dict[int, float]]:
-        extras = [j for j in range(1, self.g.count + 1) if self.g.is_extra(j) and self.g.turns(j)]
-        if not extras:
-            return [{}]
-        return [{j: 0.7 + 0.9 * k + 0.3 * j for j in extras} for k in range(3)]
-
-    def _axes_with(self, turned: dict[int, float]) -> Array:
+    def _axes_at(self) -> Iterator[Array]:
         """Axis directions (legs, joints, 3) with the extra joints turned, all else at zero."""
-        result = np.zeros((self.type.count, self.g.count, 3))
-        for row, leg in enumerate(self.type.legs):
-            rotation = AXES
-            for j, joint in enumerate(leg.joints, 1):
-                axis = np.array(joint.axis)
-                result[row, j - 1] = rotation @ axis
-                if j in turned:
-                    rotation = rotation @ rotation_about(axis, joint.turn * turned[j])
-        return result
+        turned = [self.g.is_extra(j) and self.g.turns(j) for j in range(1, self.g.count + 1)]
+        for k in range(3 if any(turned) else 1):
+            q = [(0.7 + 0.9 * k + 0.3 * j) * turns for j, turns in enumerate(turned, 1)]
+            yield np.array([chain_pose(leg, q).axes for leg in self.type.legs])
 
     def offsets(self) -> None:
         """From joint to joint, and to the connection point."""
@@ -143,7 +133,7 @@ class LegParameters:
             components = self.field(stem, j, j - 1, zeros=zeros)
             frame, what = self.g.frame("spec", self.g.group[j - 1]), f"joint {j}"
             what = "platform joint" if last else what
-            self.g.offset[j] = self.eq.give("d_#", frame, components, j, j - 1, what)
+            self.g.offset[j] = self.eq.give("d_#", components, j, j - 1, what, frame=frame)
 
 
 def offset_of(leg_type: LegType, j: int) -> Vector3:

@@ -16,7 +16,6 @@ from pne_sym.mechanics.leg_screws import LegScrews, ScrewWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import TaskSpace
-from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import (
     Compose,
     Cross,
@@ -30,9 +29,9 @@ from pne_sym.vector import (
 )
 
 _TERMS = glossary(r"""
-S_dot      | \dot{\mathbf S}          | RATE POINT_VELOCITY | Sec. 2.5, step 1.1
+S_dot      | \dot{\mathbf S}          | RATE POINT_VELOCITY @base | Sec. 2.5, step 1.1
     velocity of the connection point
-r_#        | \mathbf r_{#}            | GEOMETRY
+r_#        | \mathbf r_{#}            | GEOMETRY @link
     from joint # to the connection point, along the links
 yd_#       | \dot y_{#}               | given RATE | U/s
     rate of extra joint #
@@ -42,9 +41,9 @@ eta_#      | \eta_{#}                 | RATE
     rate at which the joints turn along moment direction #
 qd_#       | \dot q_{#}               | RECIPROCITY RATE
     rate of joint #
-omega_#    | \boldsymbol\omega_{#}    | RATE
+omega_#    | \boldsymbol\omega_{#}    | RATE @link
     angular velocity of link #
-W_#        | \mathbf C_{#}            | DEFINITION symmetric
+W_#        | \mathbf C_{#}            | DEFINITION symmetric @link
     centripetal tensor of link #
 """)
 _TEXT = (
@@ -95,9 +94,9 @@ class RateWriter:
 
     def write(self) -> LegRates:
         """The chapter: connection point, velocity and reciprocal vectors, rates of the joints."""
-        g, p, chain, of = self.g, self.p, self.chain, self.g.leg_type
-        self.book.chapter(f"{of.name}-V", f"Rates of {a_leg(of.architecture)}", _TEXT, of.name)
-        S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point), body="base")
+        g, p, chain = self.g, self.p, self.chain
+        self.eq.chapter("V", "Rates of &", _TEXT)
+        S_dot = self.eq("S_dot", p.t_dot + Cross(p.omega, g.platform_point))
         rods: dict[int, Vector] = {}
         following: Vector = ZeroVector
         for j in reversed(chain.turning):
@@ -119,8 +118,8 @@ class RateWriter:
 
     def _rod(self, j: int, following: Vector) -> Vector:
         """From the origin of turning joint j to the connection point."""
-        vector, frame = vector_sum((self.chain.spans[j], following)), self.g.frame("axes", j)
-        named: Vector = self.eq.named("r_#", vector, j, body=frame, forms=self._closed_loop(j))
+        vector = vector_sum((self.chain.spans[j], following))
+        named: Vector = self.eq.named("r_#", vector, j, forms=self._closed_loop(j))
         return named
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
@@ -156,9 +155,8 @@ class RateWriter:
     def _angular_velocities(self, screws: LegScrews, S_dot: Vector, qd: dict[int, Any]) -> LegRates:
         g, omega, spin = self.g, {0: ZeroVector}, {0: ZeroTensor}
         for j in self.chain.turning:
-            previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
-            omega[j] = self.eq("omega_#", previous + qd[j] * g.spin(j), j, body=frame)
-            spin[j] = self.eq("W_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+            omega[j] = self.eq("omega_#", omega[g.group[j - 1]] + qd[j] * g.spin(j), j)
+            spin[j] = self.eq("W_#", Compose(Skew(omega[j]), Skew(omega[j])), j)
         return LegRates(
             **vars(screws),
             S_dot=S_dot,

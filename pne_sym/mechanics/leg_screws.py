@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, ReciprocalBasis
+from pne_sym.derivation import Book
 from pne_sym.mechanics.constraints import (
     constraint_directions,
     constraint_wrenches,
@@ -19,28 +19,33 @@ from pne_sym.mechanics.constraints import (
 )
 from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.reciprocal_wrenches import (
+    Column,
     ConstraintWrench,
-    DegreesOfFreedom,
     completed_wrenches,
+    note_basis,
+    reciprocal_values,
 )
-from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.vector import Cross, Dot, DualScalar, DualVector, Vector, VectorSymbol, vector_sum
+from pne_sym.mechanics.terms import Writer, filled, glossary
+from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, vector_sum
 
 _TERMS = glossary(r"""
-v_#        | \mathbf v_{#}            | RATE | Sec. 2.2, joint table
+v_#        | \mathbf v_{#}            | RATE @tip | Sec. 2.2, joint table
     velocity of the connection point per rate of joint #
-o_#        | \mathbf o_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.2, joint table
+o_#        | \mathbf o_{#}            | RECIPROCITY RECIPROCAL @tip | Sec. 2.2, joint table
     moment part of reciprocal wrench #
-n_m#       | \mathbf n_{m#}           | GEOMETRY | Sec. 2.2, joint table
+n_m#       | \mathbf n_{m#}           | GEOMETRY @tip | Sec. 2.2, joint table
     direction # of the moment that the platform joint transmits
 m#_%       | \upsilon_{&#}            | RECIPROCITY | Sec. 2.2, joint table
     moment part # of reciprocal wrench &
-w_#        | \mathbf w_{#}            | RECIPROCITY RECIPROCAL | Sec. 2.3
+w_#        | \mathbf w_{#}            | RECIPROCITY RECIPROCAL @tip | Sec. 2.3
     reciprocal vector %
-wn_#       | \mathbf w_{c#}           | RECIPROCITY RECIPROCAL | Sec. 2.3
+wn_#       | \mathbf w_{c#}           | RECIPROCITY RECIPROCAL @tip | Sec. 2.3
     reciprocal vector %
+w_#:wrench | \mathbf w_{#}            | RECIPROCITY RECIPROCAL @tip | Sec. 2.2, joint table
+    force part of reciprocal wrench %
+wn_#:wrench | \mathbf w_{c#}          | RECIPROCITY RECIPROCAL @tip | Sec. 2.2, joint table
+    force part of reciprocal wrench %
 """)
-_WRENCH = {"title": "force part of reciprocal wrench {k}", "reference": "Sec. 2.2, joint table"}
 
 
 @dataclass(frozen=True)
@@ -74,26 +79,6 @@ class LegScrews:
         return sp.Add(*(m * a for m, a in zip(self.m.get(j, ()), coefficients, strict=False)))
 
 
-@dataclass(frozen=True)
-class _Screw:
-    """A column of a leg's system: a degree of freedom, or what completes these to a basis.
-
-    Attributes:
-        stem: of the vector reciprocal to it.
-        number: of the joint, or of the wrench.
-        is_angle: its displacement is an angle.
-    """
-
-    stem: str
-    number: int
-    is_angle: bool = False
-
-    @property
-    def joint(self) -> int:
-        """The joint; 0 for a wrench."""
-        return self.number if self.stem == "w_#" else 0
-
-
 class ScrewWriter:
     """Writes velocity vectors and reciprocal wrenches of a leg."""
 
@@ -111,25 +96,20 @@ class ScrewWriter:
         g = self.g
         v = {j: self._velocity_vector(j, rods) for j in self.chain.joints}
         joints = [j for j in self.chain.joints if not g.is_extra(j)]
-        vectors: list[Any] = [v[j] for j in joints]
-        scales: list[Any] = [g.size * g.turn(j) if g.turns(j) else sp.S.One for j in joints]
         directions = self._moment_directions()
-        rows = [[Dot(g.spin(j), n) for j in joints] for n in directions]
-        missing = (2 if self.planar else 3) + len(rows) - len(joints)
-        frame = self.chain.tip_frame
-        dofs = DegreesOfFreedom(
-            list(vectors), [list(r) for r in rows], list(scales), directions, frame
-        )
-        wrenches = self._constraint_wrenches(v, joints, missing, dofs)
-        for wrench in wrenches:
-            vector, turns = wrench.motion
-            vectors.append(vector)
-            scales.append(g.size if any(turn != 0 for turn in turns) else sp.S.One)
-            for row, turn in zip(rows, turns, strict=True):
-                row.append(turn)
-        duals, coefficients = self._reciprocals(joints, missing, vectors, rows)
+        dofs = [
+            Column(
+                v[j],
+                tuple(Dot(g.spin(j), n) for n in directions),
+                g.size * g.turn(j) if g.turns(j) else sp.S.One,
+            )
+            for j in joints
+        ]
+        wrenches = self._constraint_wrenches(v, joints, dofs, directions)
+        columns = [*dofs, *(wrench.motion(g.size) for wrench in wrenches)]
+        duals, coefficients = self._reciprocals(joints, columns)
         o, named = self._moment_parts(joints, coefficients, directions)
-        self._note_basis(vectors, duals, scales, rows, coefficients)
+        note_basis(self.book, g, columns, duals, coefficients)
         w, m = (dict(zip(joints, parts, strict=False)) for parts in (duals, coefficients))
         constraints = [wrench for wrench in wrenches if wrench.acts]
         return LegScrews(self.chain, residual, v, w, o, m, directions, constraints, named)
@@ -139,80 +119,58 @@ class ScrewWriter:
         if not g.turns(j):
             return g.e[j]
         vector, like = Cross(g.spin(j), rods[j]) + g.slide(j), g.turn(j) * g.size
-        named: Vector = self.eq("v_#", vector, j, body=self.chain.tip_frame, like=like)
+        named: Vector = self.eq("v_#", vector, j, like=like)
         return named
 
     def _moment_directions(self) -> list[Any]:
         """Directions of the moments that the platform joint transmits."""
-        frame = self.chain.tip_frame
-        return [
-            self.eq("n_m#", Cross(link, platform), k, body=frame)
-            for k, (link, platform) in enumerate(self.g.pairs, 1)
-        ]
+        return [self.eq("n_m#", Cross(*pair), k) for k, pair in enumerate(self.g.pairs, 1)]
 
     def _constraint_wrenches(
-        self, v: dict[int, Vector], joints: list[int], missing: int, dofs: DegreesOfFreedom
+        self, v: dict[int, Vector], joints: list[int], dofs: list[Column], directions: list[Any]
     ) -> list[ConstraintWrench]:
         """Wrenches that do no work along the leg's degrees of freedom."""
         book, g = self.book, self.g
+        missing = (2 if self.planar else 3) + len(directions) - len(joints)
         if missing == 0:
             return []
         if not all(auxiliary.acts for auxiliary in g.completion):
-            return completed_wrenches(book, g, g.completion, dofs)
-        if dofs.directions:
-            return constraint_wrenches(book, g, v, joints, dofs)
+            return completed_wrenches(book, g, dofs, directions)
+        if directions:
+            return constraint_wrenches(book, g, joints, dofs, directions)
         normals = constraint_directions(book, g, v, joints, missing, self.planar)
         return [ConstraintWrench(normal) for normal in normals]
 
     # ---- reciprocal wrenches -----------------------------------------------------------
 
     def _reciprocals(
-        self, joints: list[int], missing: int, vectors: list[Any], rows: list[list[Any]]
+        self, joints: list[int], columns: list[Column]
     ) -> tuple[list[Any], list[list[Any]]]:
         """Force parts, and moment parts as coefficients where the leg transmits moments."""
-        screws = [
-            *(_Screw("w_#", j, self.g.kind(j).is_angle) for j in joints),
-            *(_Screw("wn_#", k) for k in range(1, missing + 1)),
-        ]
-        if rows:
-            return self._define_wrenches(vectors, rows, screws)
-        return self._define_duals(vectors, screws), []
+        moments = bool(columns[0].turns)
+        values = reciprocal_values(columns) if moments else self._across(columns)
+        others = range(1, len(columns) - len(joints) + 1)
+        stems = [*(("w_#", j, j) for j in joints), *(("wn_#", k, 0) for k in others)]
+        duals, coefficients = [], []
+        for k, ((stem, number, joint), (force, parts)) in enumerate(
+            zip(stems, values, strict=True), 1
+        ):
+            row = f"{stem}:wrench" if moments else stem
+            duals.append(self.eq(row, force, number, k, joint=joint))
+            name = filled(stem, (number,))
+            coefficients.append([self.eq("m#_%", m, i, name, k) for i, m in enumerate(parts, 1)])
+        return duals, coefficients if moments else []
 
-    def _define_wrenches(
-        self, vectors: list[Any], rows: list[list[Any]], screws: list[_Screw]
-    ) -> tuple[list[Any], list[list[Any]]]:
-        """Reciprocal wrenches where the leg transmits moments."""
-        columns = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
-        duals, moments = [], []
-        for k, screw in enumerate(screws, 1):
-            value = DualVector(sp.Integer(k - 1), *columns)
-            duals.append(self._reciprocal(k, screw, value, _WRENCH))
-            parts = range(1, len(rows) + 1)
-            moments.append([self._moment_part(k, i, screw, columns) for i in parts])
-        return duals, moments
-
-    def _moment_part(self, k: int, i: int, screw: _Screw, columns: tuple[Any, Any]) -> Any:
-        value = DualScalar(sp.Integer(k - 1), sp.Integer(i - 1), *columns)
-        name = screw.stem.replace("#", str(screw.number))
-        return self.eq("m#_%", value, i, name, k)
-
-    def _define_duals(self, vectors: list[Any], screws: list[_Screw]) -> list[Any]:
+    def _across(self, columns: list[Column]) -> list[tuple[Any, list[Any]]]:
+        """Vectors reciprocal to others: each across all others."""
+        vectors = [column.vector for column in columns]
         if len(vectors) == 2:
             normal = plane_normal(self.book, self.g)
             others = [(vectors[1], normal), (normal, vectors[0])]
         else:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
         across = [Cross(*pair) for pair in others]
-        return [
-            self._reciprocal(k, screw, a / Dot(v, a), {})
-            for k, (v, a, screw) in enumerate(zip(vectors, across, screws, strict=True), 1)
-        ]
-
-    def _reciprocal(self, k: int, screw: _Screw, value: Any, facts: dict[str, str]) -> Any:
-        """Vector k reciprocal to the others."""
-        told = {name: text.format(k=k) for name, text in facts.items()}
-        joint, body = screw.joint, self.chain.tip_frame
-        return self.eq(screw.stem, value, screw.number, k, joint=joint, body=body, **told)
+        return [(a / Dot(v, a), []) for v, a in zip(vectors, across, strict=True)]
 
     def _moment_parts(
         self, joints: list[int], coefficients: list[list[Any]], directions: list[Any]
@@ -222,29 +180,5 @@ class ScrewWriter:
         named: dict[Any, Any] = {}
         for j, own in zip(joints, coefficients, strict=False):
             moment = vector_sum(m * n for m, n in zip(own, directions, strict=True))
-            o[j] = named[moment] = self.eq("o_#", moment, j, body=self.chain.tip_frame)
+            o[j] = named[moment] = self.eq("o_#", moment, j)
         return o, named
-
-    def _note_basis(
-        self,
-        vectors: list[Any],
-        duals: list[Any],
-        scales: list[Any],
-        rows: list[list[Any]],
-        coefficients: list[list[Any]],
-    ) -> None:
-        """Tell the lowering what is reciprocal to what."""
-        g = self.g
-        frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
-        self.book.bases.append(
-            ReciprocalBasis(
-                g.leg_type.name,
-                tuple(vectors),
-                tuple(duals),
-                tuple(scales),
-                frames,
-                tuple(tuple(row) for row in rows),
-                tuple(tuple(m) for m in coefficients),
-                g.size,
-            )
-        )

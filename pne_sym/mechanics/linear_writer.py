@@ -8,22 +8,15 @@ coordinates) put to zero.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
-
-import sympy as sp
 
 from pne_sym.derivation import Book, Law
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.terms import Term, Writer, filled
-from pne_sym.vector import (
-    LinearForm,
-    TensorSymbol,
-    VectorSymbol,
-    ZeroVector,
-    linear_form,
-)
+from pne_sym.mechanics.terms import Term, Writer, filled, is_named
+from pne_sym.vector import LinearForm, linear_form
 
 
 @dataclass(frozen=True)
@@ -79,79 +72,48 @@ class LinearWriter(Writer):
             other = linear_form(accelerated, motion.unknowns, motion.known)
             form = replace(other, remainder=form.remainder)
         symbol = self(stem, rhs, *numbers, **facts)
-        stem, term, body = (
-            filled(stem, numbers),
-            self.table[stem].numbered(numbers),
-            facts.get("body"),
+        term, stem = self.table[stem].numbered(numbers), filled(stem, numbers)
+        by_rules = partial(
+            self.book.define,
+            law=Law.RULES,
+            body=self.frame(term, numbers),
+            expanded=rhs,
+            reference="Sec. 2.3, Eq. 4",
         )
         coefficients = {
-            unknown: self._coefficient(unknown, form, term, rhs, stem=stem, body=body)
-            for unknown in form.coefficients
+            x: self._coefficient(x, form, stem, term, by_rules) for x in form.coefficients
         }
-        remainder = self._remainder(
-            form.remainder, symbol, term, rhs, rest_forms, stem=stem, body=body
-        )
-        motion.known[symbol] = LinearForm(coefficients, remainder)
+        rest = form.remainder
+        if not is_named(rest):
+            rest = by_rules(
+                self._name(f"{stem}_o"),
+                rest,
+                rf"{term.latex}^{{\circ}}",
+                f"remainder of: {term.meaning}",
+                forms=rest_forms,
+                remainder_of=symbol.name,
+            )
+        motion.known[symbol] = LinearForm(coefficients, rest)
         if collected:
             self.book.collect(symbol.name, motion.known[symbol], form)
         else:
             self.book.collect_no_coefficients(symbol.name)
         return symbol
 
-    def _remainder(
-        self,
-        value: Any,
-        symbol: Any,
-        term: Term,
-        rhs: Any,
-        forms: Sequence[Any],
-        *,
-        stem: str,
-        body: str | None,
-    ) -> Any:
-        """The remainder of a form: by its name if it has one, else defined."""
-        if isinstance(value, VectorSymbol | sp.Symbol) or value in (ZeroVector, 0):
-            return value
-        return self.book.define(
-            self._name(f"{stem}_o"),
-            value,
-            f"{term.latex}^{{\\circ}}",
-            f"remainder of: {term.meaning}",
-            Law.RULES,
-            body=body,
-            forms=forms,
-            expanded=rhs,
-            reference="Sec. 2.3, Eq. 4",
-            remainder_of=symbol.name,
-        )
-
-    def _mark(self, unknown: Any) -> str:
-        """How a coefficient's symbol names its unknown: y_3 for an extra coordinate, else alpha."""
-        joint = self.book.notation[unknown.name].joint
-        return f"y_{joint}" if joint else r"\boldsymbol\alpha"
-
-    def _stem(self, unknown: Any, stem: str) -> str:
-        """The name of a coefficient: dy_3_G, dalpha_G, or d_G of the connection point."""
-        joint = self.book.notation[unknown.name].joint
-        of = "" if unknown == self.collection.a_p else f"y_{joint}" if joint else "alpha"
-        return f"d{of}_{stem}"
-
     def _coefficient(
-        self, unknown: Any, form: LinearForm, term: Term, rhs: Any, *, stem: str, body: str | None
+        self, unknown: Any, form: LinearForm, stem: str, term: Term, by_rules: Callable[..., Any]
     ) -> Any:
-        """A coefficient of a form: by its name if it has one, else defined."""
+        """A coefficient of a form: by its name if it has one, else defined.
+
+        It is called d_G of the connection point's acceleration, dy_3_G of an extra coordinate's,
+        dalpha_G of the platform's.
+        """
         value = self.collection.named.get(form.coefficients[unknown], form.coefficients[unknown])
-        if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
+        if is_named(value) or not value.args:
             return value
-        first = unknown == self.collection.a_p
-        return self.book.define(
-            self._name(self._stem(unknown, stem)),
-            value,
-            term.coefficient if first else f"{term.latex}^{{({self._mark(unknown)})}}",
-            f"coefficient of the acceleration in: {term.meaning}",
-            Law.RULES,
-            body=body,
-            linear=form if first else None,
-            expanded=rhs,
-            reference="Sec. 2.3, Eq. 4",
-        )
+        title = f"coefficient of the acceleration in: {term.meaning}"
+        if unknown == self.collection.a_p:
+            return by_rules(self._name(f"d_{stem}"), value, term.coefficient, title, linear=form)
+        joint = self.book.notation[unknown.name].joint
+        of, mark = (f"y_{joint}",) * 2 if joint else ("alpha", r"\boldsymbol\alpha")
+        return by_rules(self._name(f"d{of}_{stem}"), value, f"{term.latex}^{{({mark})}}", title)

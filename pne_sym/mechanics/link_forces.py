@@ -30,19 +30,19 @@ from pne_sym.vector import (
 )
 
 _TERMS = glossary(r"""
-phi_#     | \mathbf f^{\omega}_{#} ; \boldsymbol\Phi_{#}   | NEWTON | Eq. 1
+phi_#     | \mathbf f^{\omega}_{#} ; \boldsymbol\Phi_{#}   | NEWTON @link | Eq. 1
     inertia force of link # from its turning about its reference point
-acc_#     | \mathbf a_{#} ; \boldsymbol\Theta_{#}          | RATE | Eqs. 10, 11, 17, 18
+acc_#     | \mathbf a_{#} ; \boldsymbol\Theta_{#}          | RATE @link | Eqs. 10, 11, 17, 18
     acceleration of the reference point of link #, less gravity
-f_#       | \mathbf f_{#} ; \boldsymbol\Upsilon_{#}        | NEWTON | Eq. 1
+f_#       | \mathbf f_{#} ; \boldsymbol\Upsilon_{#}        | NEWTON @link | Eq. 1
     inertia force of link # less its weight
-mu_#      | \boldsymbol\mu_{#} ; \boldsymbol\Psi_{#}       | EULER | Eq. 2
+mu_#      | \boldsymbol\mu_{#} ; \boldsymbol\Psi_{#}       | EULER @link | Eq. 2
     inertia moment of the links that turn with link #, about their reference points
-J_group_# | \mathbf J^\Sigma_{#}  | LUMPING constant symmetric
+J_group_# | \mathbf J^\Sigma_{#}  | LUMPING constant symmetric @link
     inertia of the links that turn with link #, each about its reference point
-Sigma_#   | \boldsymbol\Sigma_{#} | LUMPING constant symmetric
+Sigma_#   | \boldsymbol\Sigma_{#} | LUMPING constant symmetric @link
     second moment of mass of the links that turn with link #
-h_group_# | \mathbf h^\Sigma_{#}  | LUMPING constant
+h_group_# | \mathbf h^\Sigma_{#}  | LUMPING constant @link
     first moments of the links that turn with link #
 """)
 
@@ -101,14 +101,14 @@ class LinkWriter:
         acceleration: dict[int, Any] = {}
         at_tip, turning_at_tip = None, ZeroVector
         for body in self.bodies:
-            j, frame = body.joint, self.g.frame("axes", body.group)
+            j = body.joint
             acceleration[j] = self._acceleration(body)
             turning = self._turning(body)
             if body.at_tip:
                 at_tip, turning_at_tip = body, turning
                 continue
             total, collected = body.mass * acceleration[j] + turning, not self.g.composite
-            force[j] = self.eq.collected("f_#", total, j, body=frame, collected=collected)
+            force[j] = self.eq.collected("f_#", total, j, collected=collected)
         return LinkForces(acceleration, force, at_tip, turning_at_tip)
 
     def _turning(self, body: LinkBody) -> Any:
@@ -121,7 +121,6 @@ class LinkWriter:
             "phi_#",
             Cross(alpha, h) + Cross(omega, Cross(omega, h)),
             body.joint,
-            body=self.g.frame("axes", body.group),
             forms=(tensor @ h,),
             rest_forms=(at_rest @ h,),
             collected=body.at_tip or not self.g.composite,
@@ -136,9 +135,8 @@ class LinkWriter:
             reach, slides = self.chain.reach(j), self.chain.slides(body.group, j)
             value, form, rest = self.motion.of_point(body.group, reach, slides)
             forms = {"forms": (form - self.gravity,), "rest_forms": (rest - self.gravity,)}
-        frame, collected = g.frame("axes", body.group), body.at_tip or not g.composite
-        relative = value - self.gravity
-        return self.eq.collected("acc_#", relative, j, body=frame, collected=collected, **forms)
+        collected = body.at_tip or not g.composite
+        return self.eq.collected("acc_#", value - self.gravity, j, collected=collected, **forms)
 
     # ---- moments ---------------------------------------------------------------------
 
@@ -161,7 +159,6 @@ class LinkWriter:
             "mu_#",
             vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
             group,
-            body=self.g.frame("axes", group),
             forms=tuple(vector_sum((turning, *terms)) for terms, _ in ways),
             rest_forms=tuple(vector_sum((turning_rest, *terms)) for _, terms in ways),
             collected=not self.g.composite,
@@ -169,9 +166,8 @@ class LinkWriter:
 
     def _group_inertia(self, group: int, members: Sequence[LinkBody]) -> tuple[Any, Any]:
         """Inertia tensor J of a group's links, each about its reference point; tr(J)/2 E - J."""
-        frame = self.g.frame("axes", group)
-        J = self.eq.named("J_group_#", tensor_sum(b.inertia for b in members), group, body=frame)
-        return J, self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group, body=frame)
+        J = self.eq.named("J_group_#", tensor_sum(b.inertia for b in members), group)
+        return J, self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group)
 
     def _gathered_moments(
         self, members: Sequence[LinkBody], acceleration: dict[int, Any]
@@ -186,8 +182,7 @@ class LinkWriter:
                 return []
             without[b.joint] = found
         group = members[0].group
-        sum_of_moments, frame = vector_sum(b.first_moment for b in members), self.g.frame
-        total = self.eq("h_group_#", sum_of_moments, group, body=frame("axes", group))
+        total = self.eq("h_group_#", vector_sum(b.first_moment for b in members), group)
         weight = -Cross(total, self.gravity)
         terms, at_rest = (
             [weight, *(Cross(b.first_moment, without[b.joint][k]) for b in members)] for k in (0, 1)

@@ -19,15 +19,15 @@ from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Dot, Identity, Outer, Vector, ZeroVector
 
 _TERMS = glossary(r"""
-rho_#     | \boldsymbol\rho_{#}  | given
+rho_#     | \boldsymbol\rho_{#}  | given @own
     origin of link # to its centre of mass, fixed in the link
-I_#       | \mathbf I_{#}        | given
+I_#       | \mathbf I_{#}        | given @own
     inertia tensor of link # about its centre of mass
-rho_tip_# | \boldsymbol\rho'_{#} | LUMPING constant
+rho_tip_# | \boldsymbol\rho'_{#} | LUMPING constant @own
     connection point to the centre of mass of link #
-h_#       | \mathbf h_{#}        | LUMPING constant
+h_#       | \mathbf h_{#}        | LUMPING constant @own
     first moment of link # about %
-J_#       | \mathbf J_{#}        | LUMPING constant symmetric
+J_#       | \mathbf J_{#}        | LUMPING constant symmetric @own
     inertia tensor of link # about %
 """)
 _FIELDS = {
@@ -82,26 +82,24 @@ class _Writer:
     def body(self, j: int, *, at_tip: bool) -> LinkBody:
         """Lumped inertia of link j about its reference point."""
         g = self.g
-        frame = g.frame("spec", g.group[j])
-        mass, arm, inertia = self._parameters(j, frame)
+        mass, arm, inertia = self._parameters(j)
         beyond = g.offset[g.count + 1]
         if at_tip and beyond != ZeroVector:
-            arm = self.eq("rho_tip_#", arm - beyond, j, body=frame)
+            arm = self.eq("rho_tip_#", arm - beyond, j)
         point = "the connection point" if at_tip else f"the origin of link {j}"
-        moment = self.eq("h_#", mass * arm, j, point, body=frame)
+        moment = self.eq("h_#", mass * arm, j, point)
         about_point = inertia + mass * (Dot(arm, arm) * Identity - Outer(arm, arm))
-        tensor = self.eq("J_#", about_point, j, point, body=frame)
+        tensor = self.eq("J_#", about_point, j, point)
         return LinkBody(j, g.group[j], at_tip, mass, moment, tensor)
 
-    def _parameters(self, j: int, frame: str) -> tuple[Any, Any, Any]:
+    def _parameters(self, j: int) -> tuple[Any, Any, Any]:
         """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
         (mass,) = self._field(j, "mass", rule=Rule.MASS)
         note(self.book, mass, f"m_{{{j}}}", f"mass of link {j}")
         centre = self._field(j, "centre_of_mass", zeros=(2,) if self.planar else ())
         rule = Rule.PLANAR_INERTIA if self.planar else Rule.INERTIA
         entries = symmetric_entries(self._field(j, "inertia", rule=rule), self.planar)
-        rho = self.eq.give("rho_#", frame, centre, j)
-        return mass, rho, self.eq.give_tensor("I_#", frame, entries, j)
+        return mass, self.eq.give("rho_#", centre, j), self.eq.give("I_#", entries, j)
 
     def _field(self, j: int, name: str, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
         """A live parameter of link j: symbols of its entries."""

@@ -20,9 +20,9 @@ from pne_sym.vector import Dot, Identity, Outer, Vector, ZeroTensor, tensor_sum,
 _TERMS = glossary(r"""
 m_star | m^*         | LUMPING constant
     mass of the platform with the gathered masses
-h_star | \mathbf h^* | LUMPING constant
+h_star | \mathbf h^* | LUMPING constant @platform
     first moment about the platform origin
-J_star | \mathbf J^* | LUMPING constant symmetric
+J_star | \mathbf J^* | LUMPING constant symmetric @platform
     inertia tensor about the platform origin
 """)
 _TITLE = "Platform inertia with the masses gathered at the connection points"
@@ -71,8 +71,8 @@ def write_inertia(book: Book, p: PlatformMotion, legs: Sequence[Leg]) -> Platfor
     )
     return PlatformInertia(
         eq("m_star", mass),
-        eq("h_star", moment, body="platform"),
-        eq("J_star", tensor, body="platform"),
+        eq("h_star", moment),
+        eq("J_star", tensor),
     )
 
 

@@ -15,7 +15,6 @@ from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_accelerations import JointAccelerations
 from pne_sym.mechanics.platform_motion import BaseMotion, PlatformMotion
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import (
     Compose,
     Cross,
@@ -32,28 +31,28 @@ _TERMS = glossary(r"""
 omega_b    | \boldsymbol\omega_b      | given BASE_ANGULAR_VELOCITY     | rad/s
 alpha_b    | \boldsymbol\alpha_b      | given BASE_ANGULAR_ACCELERATION | rad/s^2
 a_b        | \mathbf a_b              | given BASE_ACCELERATION         | m/s^2
-R_b        | \mathbf R_b              | given BASE_ROTATION             | -
-B_b        | \mathbf B_b              | MOVING_FRAME | beyond the paper
+R_b        | \mathbf R_b              | given BASE_ROTATION @base | -
+B_b        | \mathbf B_b              | MOVING_FRAME @base | beyond the paper
     acceleration tensor of the base
-g_b        | \mathbf g_b              | MOVING_FRAME | beyond the paper
+g_b        | \mathbf g_b              | MOVING_FRAME @base | beyond the paper
     acceleration of gravity, base axes
-g_f        | \mathbf g_f              | MOVING_FRAME | beyond the paper
+g_f        | \mathbf g_f              | MOVING_FRAME @base | beyond the paper
     gravity less the acceleration of the base origin
-a_m        | \mathbf a_m              | MOVING_FRAME | beyond the paper
+a_m        | \mathbf a_m              | MOVING_FRAME @base | beyond the paper
     acceleration of the platform origin from the turning of the base
-f_b        | \mathbf f_b              | MOVING_FRAME | beyond the paper
+f_b        | \mathbf f_b              | MOVING_FRAME @base | beyond the paper
     inertia force of the platform from the motion of the base
-mu_b       | \boldsymbol\mu_b         | MOVING_FRAME | beyond the paper
+mu_b       | \boldsymbol\mu_b         | MOVING_FRAME @platform | beyond the paper
     inertia moment of the platform from the motion of the base
-S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME | beyond the paper
+S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME @base | beyond the paper
     acceleration of the connection point in space, less that of the base origin
-a_b0       | \mathbf a_{b0}           | MOVING_FRAME | beyond the paper
+a_b0       | \mathbf a_{b0}           | MOVING_FRAME @base | beyond the paper
     acceleration of the base point, less that of the base origin
-omega_b_#  | \boldsymbol\omega_{b#}   | MOVING_FRAME | beyond the paper
+omega_b_#  | \boldsymbol\omega_{b#}   | MOVING_FRAME @link | beyond the paper
     angular velocity of link # in space
-W_b_#      | \mathbf W_{b#}           | DEFINITION symmetric
+W_b_#      | \mathbf W_{b#}           | DEFINITION symmetric @link
     centripetal tensor of link # in space
-zeta_b_#   | \boldsymbol\zeta_{b#}    | MOVING_FRAME | beyond the paper
+zeta_b_#   | \boldsymbol\zeta_{b#}    | MOVING_FRAME @link | beyond the paper
     angular acceleration of link # from the turning of its axis in space
 """)
 _TEXT = (
@@ -84,9 +83,9 @@ def introduce_base(book: Book, gravity: Vector, *, planar: bool) -> BaseMotion:
     omega, alpha = eq.given("omega_b", turns), eq.given("alpha_b", turns)
     a = eq.given("a_b", moves)
     book.chapter("B", "Motion of the base", _TEXT)
-    tensor = eq("B_b", Skew(alpha) + Compose(Skew(omega), Skew(omega)), body="base")
-    weight = eq("g_b", Transpose(rotation) @ gravity, body="base")
-    return BaseMotion(omega, alpha, tensor, weight, eq("g_f", weight - a, body="base"))
+    tensor = eq("B_b", Skew(alpha) + Compose(Skew(omega), Skew(omega)))
+    weight = eq("g_b", Transpose(rotation) @ gravity)
+    return BaseMotion(omega, alpha, tensor, weight, eq("g_f", weight - a))
 
 
 def _rotation(eq: Writer, *, planar: bool) -> Any:
@@ -96,7 +95,7 @@ def _rotation(eq: Writer, *, planar: bool) -> Any:
         (xx, xy, _), (yx, yy, _), _ = names
         zero, one = sp.S.Zero, sp.S.One
         entries = [xx, xy, zero, yx, yy, zero, zero, zero, one]
-    return eq.give_tensor("R_b", "base", entries, symmetric=False)
+    return eq.give("R_b", entries, symmetric=False)
 
 
 def carried_platform(
@@ -119,18 +118,16 @@ def carried_platform(
     moved = eq(
         "a_m",
         vector_sum((Cross(alpha, p.t), Cross(w, Cross(w, p.t)), coriolis)),
-        body="base",
         forms=(vector_sum((base.tensor @ p.t, coriolis)),),
     )
     coriolis = Cross(w, Cross(p.omega, h)) * 2
     force = eq(
         "f_b",
         vector_sum((mass * moved, Cross(alpha, h), Cross(w, Cross(w, h)), coriolis)),
-        body="base",
         forms=(vector_sum((mass * moved, base.tensor @ h, coriolis)),),
     )
     turned = J @ (alpha + Cross(w, p.omega)) + Cross(w, J @ (w + p.omega)) + Cross(p.omega, J @ w)
-    return force, eq("mu_b", Cross(h, moved) + turned, body="platform")
+    return force, eq("mu_b", Cross(h, moved) + turned)
 
 
 def carried_leg(
@@ -145,20 +142,19 @@ def carried_leg(
         motion: of the leg, relative to the base.
     """
     g, w = motion.chain.g, base.omega
-    eq, of = Writer(book, g, _TERMS), g.leg_type
-    title = f"Motion of {a_leg(of.architecture)} with its base"
-    book.chapter(f"{of.name}-B", title, _OF_LEG, of.name)
+    eq = Writer(book, g, _TERMS)
+    eq.chapter("B", "Motion of & with its base", _OF_LEG)
     r, coriolis = p.t + g.platform_point, Cross(w, motion.S_dot) * 2
     total = motion.S_ddot + Cross(base.alpha, r) + Cross(w, Cross(w, r)) + coriolis
     forms = (motion.S_ddot + base.tensor @ r + coriolis,)
-    S_ddot = eq("S_ddot_b", total, body="base", forms=forms)
+    S_ddot = eq("S_ddot_b", total, forms=forms)
     motion.known[S_ddot] = linear_form(total, [motion.a_p], motion.known)
     turning = Cross(base.alpha, g.base_point) + Cross(w, Cross(w, g.base_point))
-    origin = eq("a_b0", turning, body="base", forms=(base.tensor @ g.base_point,))
+    origin = eq("a_b0", turning, forms=(base.tensor @ g.base_point,))
     omega, spin, turned = {0: w}, {0: ZeroTensor}, {0: ZeroVector}
     for j in motion.chain.turning:
-        previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
-        omega[j] = eq("omega_b_#", previous + motion.qd[j] * g.spin(j), j, body=frame)
-        spin[j] = eq("W_b_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
-        turned[j] = eq.named("zeta_b_#", motion.qd[j] * Cross(previous, g.spin(j)), j, body=frame)
+        previous = omega[g.group[j - 1]]
+        omega[j] = eq("omega_b_#", previous + motion.qd[j] * g.spin(j), j)
+        spin[j] = eq("W_b_#", Compose(Skew(omega[j]), Skew(omega[j])), j)
+        turned[j] = eq.named("zeta_b_#", motion.qd[j] * Cross(previous, g.spin(j)), j)
     return replace(motion, omega=omega, spin=spin, S_ddot=S_ddot, coriolis=turned), origin

@@ -51,11 +51,11 @@ class Side:
 FORCES = Side("f_p", "R_t", "t", "Z_p", "Z_t")
 MOMENTS = Side("mu_p", "R_a", "a", "Z_q", "Z_a")
 _TERMS = glossary(r"""
-M_tt | \mathbf M_{tt}           | RULES symmetric | Eq. 34
+M_tt | \mathbf M_{tt}           | RULES symmetric @base | Eq. 34
     translational block of M
-M_ta | \mathbf M_{t\alpha}      | RULES | Eq. 34
+M_ta | \mathbf M_{t\alpha}      | RULES @base | Eq. 34
     coupling block of M
-M_aa | \mathbf M_{\alpha\alpha} | RULES symmetric | Eq. 34
+M_aa | \mathbf M_{\alpha\alpha} | RULES symmetric @base | Eq. 34
     rotational block of M
 Z_p  | \mathbf Z_p              | RULES | Eq. 34
     centripetal force and weight of the platform
@@ -156,7 +156,7 @@ class BlockWriter:
         )
         rules = LinearForm({}, ZeroVector, tuple(dict.fromkeys(steps)))
         whole, value = self._equation(side.required).rhs, form.coefficients[unknown]
-        return self.eq(f"M_{side.row}{index}", value, body="base", linear=rules, expanded=whole)
+        return self.eq(f"M_{side.row}{index}", value, linear=rules, expanded=whole)
 
     def _rest(self, symbol: str, name: str, form: LinearForm) -> Any:
         """What is left of a quantity at zero acceleration of the platform."""

@@ -23,17 +23,17 @@ from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import Cross, Dot, LinearForm, Vector, ZeroVector, linear_form, vector_sum
 
 _TERMS = glossary(r"""
-a_t    | \mathbf a_t          | RATE     | Eq. 32
+a_t    | \mathbf a_t          | RATE @base | Eq. 32
     acceleration of the platform origin, less gravity
-f_p    | \mathbf f_p          | NEWTON   | Eq. 32
+f_p    | \mathbf f_p          | NEWTON @base | Eq. 32
     inertia force of the platform less its weight
 mu_p   | \boldsymbol\mu_p     | EULER    | Eq. 33
     inertia moment of the platform less that of its weight
-R_t    | \mathbf R_t          | ASSEMBLY | Eq. 32
+R_t    | \mathbf R_t          | ASSEMBLY @base | Eq. 32
     force that actuators and external wrench must give
-R_a    | \mathbf R_\alpha     | ASSEMBLY | Eq. 33
+R_a    | \mathbf R_\alpha     | ASSEMBLY @base | Eq. 33
     moment that actuators and external wrench must give
-M_ya_# | \mathbf M_{y\alpha,#} | RULES    | Eqs. 6, 7
+M_ya_# | \mathbf M_{y\alpha,#} | RULES @base | Eqs. 6, 7
     coupling of extra joint # with the rotation of the platform
 """)
 _EQUILIBRIUM = (
@@ -71,7 +71,7 @@ class PlatformWriter:
         self.book.chapter("E", "Equilibrium of the platform", _EQUILIBRIUM)
         relative: Vector = -p.gravity
         if self.space.translates:
-            relative = self.eq("a_t", p.t_ddot - p.gravity, body="base")
+            relative = self.eq("a_t", p.t_ddot - p.gravity)
         force = self._newton(relative) if self.space.translates else None
         moment = self._euler(relative) if self.space.rotates else None
         more_force, more_moment = carried_platform(self.book, p, mass, h, J)
@@ -87,7 +87,7 @@ class PlatformWriter:
         p, mass, h = self.p, self.inertia.mass, self.inertia.moment
         turning = Cross(p.alpha, h) + Cross(p.omega, Cross(p.omega, h))
         forms = (mass * relative + p.tensor @ h,) if self.space.rotates else ()
-        return self.eq("f_p", mass * relative + turning, body="base", forms=forms)
+        return self.eq("f_p", mass * relative + turning, forms=forms)
 
     def _euler(self, relative: Vector) -> Any:
         """Inertia moment of the platform less that of its weight."""
@@ -99,7 +99,7 @@ class PlatformWriter:
     def _force(self, own: Any) -> None:
         """What H tau plus the external wrench must equal: force."""
         total = plus_sums(own, self.legs, lambda leg: -leg.dynamics.force)
-        self.put.vector("required", self.eq("R_t", total, body="base"), 0)
+        self.put.vector("required", self.eq("R_t", total), 0)
 
     def _moment(self, own: Any) -> None:
         """The same: moment about the platform origin."""
@@ -108,7 +108,7 @@ class PlatformWriter:
             return -Cross(leg.g.platform_point, leg.dynamics.force) - leg.dynamics.moment
 
         total = plus_sums(own, self.legs, of_leg)
-        self.put.vector("required", self.eq("R_a", total, body="base"), 3)
+        self.put.vector("required", self.eq("R_a", total), 3)
 
     # ---- blocks of M, Z, H -----------------------------------------------------------
 
@@ -138,7 +138,7 @@ class PlatformWriter:
             if self.space.rotates:
                 write = Writer(self.book, leg.g, _TERMS)
                 rules = LinearForm({}, sp.S.Zero, own.steps)
-                arm = write("M_ya_#", own.coefficients[self.p.alpha], j, body="base", linear=rules)
+                arm = write("M_ya_#", own.coefficients[self.p.alpha], j, linear=rules)
                 self.put.leg_row("M", leg, arm, 3, rows)
         for k, columns in self.put.extras_of(leg):
             value = form.coefficients.get(leg.motion.ydd[k], 0)

@@ -26,24 +26,24 @@ eps       | \boldsymbol\epsilon | given
 eps_w     | \epsilon_w          | given
     scalar part of the quaternion
 t         | \mathbf t           | given POSITION             | m
-t:fixed   | \mathbf t           | given POSITION
+t:fixed   | \mathbf t           | given POSITION @base
     fixed centre of rotation
 t_dot     | \dot{\mathbf t}     | given VELOCITY             | m/s
 t_ddot    | \ddot{\mathbf t}    | given ACCELERATION         | m/s^2
 omega     | \boldsymbol\omega   | given ANGULAR_VELOCITY     | rad/s
 alpha     | \boldsymbol\alpha   | given ANGULAR_ACCELERATION | rad/s^2
-g         | \mathbf g           | given GRAVITY
-W_p       | \mathbf C_p         | DEFINITION symmetric
+g         | \mathbf g           | given GRAVITY @base
+W_p       | \mathbf C_p         | DEFINITION symmetric @base
     centripetal tensor of the platform
-B_p       | \mathbf B_p         | DEFINITION
+B_p       | \mathbf B_p         | DEFINITION @base
     acceleration tensor of the platform
-R         | \boldsymbol\rho_p   | given
+R         | \boldsymbol\rho_p   | given @platform
     platform origin to centre of mass
-R_payload | \boldsymbol\rho_l   | given
+R_payload | \boldsymbol\rho_l   | given @platform
     platform origin to centre of mass of the payload
-I_p       | \mathbf I_p         | given
+I_p       | \mathbf I_p         | given @platform
     inertia tensor of the platform about its centre of mass
-I_payload | \mathbf I_l         | given
+I_payload | \mathbf I_l         | given @platform
     inertia tensor of the payload about its centre of mass
 """)
 
@@ -116,8 +116,8 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     book.chapter("P", "Platform motion", _TEXT)
     if space.rotates:
         omega, alpha = given["omega"], given["alpha"]
-        spin = eq("W_p", Compose(Skew(omega), Skew(omega)), body="base")
-        tensor = eq("B_p", Skew(alpha) + spin, body="base")
+        spin = eq("W_p", Compose(Skew(omega), Skew(omega)))
+        tensor = eq("B_p", Skew(alpha) + spin)
     mass, centre, inertia = _inertia(eq, manipulator.platform, space, _PLATFORM)
     payload = manipulator.payload
     return PlatformMotion(
@@ -190,12 +190,12 @@ def _motion(eq: Writer, manipulator: Manipulator, space: TaskSpace) -> dict[str,
     else:
         what, values = "fixed centre of rotation, base frame", manipulator.fixed_centre
         centre = of_all(eq.book, "fixed_centre", "fixed_centre", values, "m", what)
-        t = eq.give("t:fixed", "base", centre)
+        t = eq.give("t:fixed", centre)
     t_dot, t_ddot = eq.given("t_dot", moves), eq.given("t_ddot", moves)
     omega, alpha = eq.given("omega", turns), eq.given("alpha", turns)
     what, flat = "acceleration of gravity, base frame", (2,) if space.planar else ()
     gravity = of_all(eq.book, "gravity", "gravity", manipulator.gravity, "m/s^2", what, zeros=flat)
-    g = eq.give("g", "base", gravity)
+    g = eq.give("g", gravity)
     return {"t": t, "t_dot": t_dot, "t_ddot": t_ddot, "omega": omega, "alpha": alpha, "gravity": g}
 
 
@@ -220,11 +220,11 @@ def _inertia(
     (mass,) = given("mass", "kg", what, rule=Rule.MASS)
     centre = given("centre_of_mass", "m", f"centre of mass{of}, platform frame", zeros=flat)
     note(eq.book, mass, f"m_{mark}", what)
-    R = eq.give(point, "platform", centre)
+    R = eq.give(point, centre)
     its, rule = "its" if of else "the", Rule.PLANAR_INERTIA if space.planar else Rule.INERTIA
     what = f"inertia tensor{of} about {its} centre of mass, platform axes"
     entries = given("inertia", "kg m^2", what, rule=rule)
-    return mass, R, eq.give_tensor(tensor, "platform", symmetric_entries(entries, space.planar))
+    return mass, R, eq.give(tensor, symmetric_entries(entries, space.planar))
 
 
 def symmetric_entries(entries: tuple[Any, ...], planar: bool) -> tuple[Any, ...]:

@@ -8,7 +8,7 @@ Reference: section 3.7, Eqs. 35 to 37.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -31,23 +31,38 @@ from pne_sym.vector import (
 )
 
 _TERMS = glossary(r"""
-a_c#        | \hat{\mathbf a}_{c#} | given
+a_c#        | \hat{\mathbf a}_{c#} | given @tip
     coordinate direction of the last link, to complete the leg's degrees of freedom
-t_c#        | \mathbf t_{c#}      | GEOMETRY
+t_c#        | \mathbf t_{c#}      | GEOMETRY @tip
     velocity of the connection point as it turns about the fixed centre
-f_c#        | \mathbf n'_{c#}     | RECIPROCITY | Eq. 35
+f_c#        | \mathbf n'_{c#}     | RECIPROCITY @tip | Eq. 35
     force part of constraint wrench #
 m#_c%       | \upsilon'_{c%#}     | RECIPROCITY | Eq. 35
     moment part # of constraint wrench %
 size_c#     | \psi_{c#}           | GEOMETRY
     size of the %
-n_c#        | \mathbf n_{c#}      | GEOMETRY | Eq. 35
+n_c#        | \mathbf n_{c#}      | GEOMETRY @tip | Eq. 35
     unit force of the constraint wrench
 mu#_c%      | \upsilon_{c%#}      | GEOMETRY | Eq. 35
     moment along direction # that goes with it
-mu_c#       | \mathbf o_{c#}      | GEOMETRY | Eq. 35
+mu_c#       | \mathbf o_{c#}      | GEOMETRY @tip | Eq. 35
     the moment that goes with it
 """)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a leg's system: a degree of freedom, or what completes these to a basis.
+
+    Attributes:
+        vector: velocity of the connection point.
+        turns: angular velocity along the directions of the moments that are transmitted.
+        scale: size of the vector.
+    """
+
+    vector: Any
+    turns: tuple[Any, ...]
+    scale: Any
 
 
 @dataclass(frozen=True)
@@ -68,148 +83,141 @@ class ConstraintWrench:
     moment: Vector = ZeroVector
     acts: bool = True
     of_moment: bool = False
-    auxiliary: tuple[Any, tuple[Any, ...]] | None = None
+    auxiliary: Column | None = None
 
-    @property
-    def motion(self) -> tuple[Any, tuple[Any, ...]]:
-        """What completes the leg's degrees of freedom: velocity, turns along the directions.
+    def motion(self, length: Any) -> Column:
+        """What completes the leg's degrees of freedom.
 
         Along its force, or about its moment: the leg's force has lambda, and no more, of what
         works on that motion, so lambda is its component.  Force and moment together would be no
         motion: a length would have to make them one.
+
+        Args:
+            length: of the leg, by which what turns moves points.
         """
+        vector, turns = self.force, tuple(sp.S.Zero for _ in self.coefficients)
         if self.auxiliary is not None:
-            return self.auxiliary
-        if self.of_moment:
-            return ZeroVector, self.coefficients
-        return self.force, tuple(sp.S.Zero for _ in self.coefficients)
+            vector, turns = self.auxiliary.vector, self.auxiliary.turns
+        elif self.of_moment:
+            vector, turns = ZeroVector, self.coefficients
+        return Column(vector, turns, length if any(turn != 0 for turn in turns) else sp.S.One)
 
 
-@dataclass(frozen=True)
-class DegreesOfFreedom:
-    """Degrees of freedom of a leg as columns that are to be completed.
-
-    Attributes:
-        vectors: velocity of the connection point, per joint that is not extra.
-        rows: per moment direction, the part of each joint's axis along it.
-        scales: sizes of the velocity vectors.
-        directions: of the moments that the platform joint transmits.
-        frame: of the last link.
-    """
-
-    vectors: list[Any]
-    rows: list[list[Any]]
-    scales: list[Any]
-    directions: list[Any]
-    frame: str
+def reciprocal_values(columns: Sequence[Column]) -> list[tuple[Any, list[Any]]]:
+    """Of the wrench reciprocal to each column: its force part, its moment parts."""
+    rows = [sp.Tuple(*row) for row in _rows(columns)]
+    screws = sp.Tuple(*(c.vector for c in columns)), sp.Tuple(*rows)
+    return [
+        (DualVector(k, *screws), [DualScalar(k, sp.Integer(i), *screws) for i in range(len(rows))])
+        for k in map(sp.Integer, range(len(columns)))
+    ]
 
 
-def completed_wrenches(
-    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], dofs: DegreesOfFreedom
-) -> list[ConstraintWrench]:
-    """The wrenches reciprocal to a leg's degrees of freedom: of unit force, or unit moments."""
-    columns = [_column(book, g, auxiliary, dofs) for auxiliary in chosen]
-    vectors = [*(vector for vector, _ in columns), *dofs.vectors]
-    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(dofs.rows)]
-    screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
-    writer = _WrenchWriter(book, g, dofs.directions, dofs.frame)
-    parts = [writer.reciprocal(k, a, screws, len(rows)) for k, a in enumerate(chosen)]
-    found = [writer.of_unit_size(k, a, *parts[k]) for k, a in enumerate(chosen)]
-    if any(auxiliary.kind is Kind.TURN for auxiliary in chosen):
-        # Forces of several wrenches may be in one plane there.
-        columns_of = [(vector, tuple(entries)) for vector, entries in columns]
-        found = [replace(w, auxiliary=c) for w, c in zip(found, columns_of, strict=True)]
+def note_basis(
+    book: Book,
+    g: LegGeometry,
+    columns: Sequence[Column],
+    duals: Iterable[Any],
+    moments: Iterable[Sequence[Any]],
+) -> None:
+    """Tell the lowering what is reciprocal to what."""
     frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
     book.bases.append(
         ReciprocalBasis(
             g.leg_type.name,
-            tuple(vectors),
-            tuple(force for force, _ in parts),
-            # Turns move points by lengths.
-            (*(sp.S.One if a.kind is Kind.SLIDE else g.size for a in chosen), *dofs.scales),
+            tuple(c.vector for c in columns),
+            tuple(duals),
+            tuple(c.scale for c in columns),
             tuple(frames),
-            tuple(tuple(row) for row in rows),
-            tuple(coefficients for _, coefficients in parts),
+            _rows(columns),
+            tuple(map(tuple, moments)),
             g.size,
         )
     )
+
+
+def _rows(columns: Sequence[Column]) -> tuple[tuple[Any, ...], ...]:
+    """Turns of all columns, by moment directions."""
+    return tuple(zip(*(c.turns for c in columns), strict=True))
+
+
+def completed_wrenches(
+    book: Book, g: LegGeometry, dofs: Sequence[Column], directions: list[Any]
+) -> list[ConstraintWrench]:
+    """The wrenches reciprocal to a leg's degrees of freedom: of unit force, or unit moments."""
+    chosen, eq = g.completion, Writer(book, g, _TERMS)
+    own = [_column(book, g, auxiliary, directions) for auxiliary in chosen]
+    parts = []
+    values = reciprocal_values([*own, *dofs])[: len(chosen)]
+    for k, (force, moments) in enumerate(values, 1):
+        named = eq("f_c#", force, k)
+        parts.append((named, tuple(eq("m#_c%", m, i, k) for i, m in enumerate(moments, 1))))
+    found = [
+        _of_unit_size(eq, k, auxiliary, force, moments, directions)
+        for k, (auxiliary, (force, moments)) in enumerate(zip(chosen, parts, strict=True), 1)
+    ]
+    if any(auxiliary.kind is Kind.TURN for auxiliary in chosen):
+        # Forces of several wrenches may be in one plane there.
+        found = [replace(w, auxiliary=c) for w, c in zip(found, own, strict=True)]
+    forces, moments_of = zip(*parts, strict=True)
+    note_basis(book, g, [*own, *dofs], forces, moments_of)
     return found
 
 
-def _column(
-    book: Book, g: LegGeometry, auxiliary: Auxiliary, dofs: DegreesOfFreedom
-) -> tuple[Any, list[Any]]:
+def _column(book: Book, g: LegGeometry, auxiliary: Auxiliary, directions: list[Any]) -> Column:
     """Velocity of the connection point, and angular velocity along the moment directions."""
     number = auxiliary.number
     if auxiliary.kind is Kind.RIGHT_ANGLE:
-        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(dofs.rows))]
-    a = direction(book, g, number, dofs.frame)
+        turns = tuple(sp.Integer(int(i == number)) for i in range(len(directions)))
+        return Column(ZeroVector, turns, g.size)
+    a = direction(book, g, number)
     if auxiliary.kind is Kind.SLIDE:
-        return a, [sp.S.Zero for _ in dofs.rows]
-    eq = Writer(book, g, _TERMS)
-    velocity = eq("t_c#", Cross(a, g.platform_point), number + 1, body=dofs.frame)
-    return velocity, [Dot(a, n) for n in dofs.directions]
+        return Column(a, tuple(sp.S.Zero for _ in directions), sp.S.One)
+    velocity = Writer(book, g, _TERMS)("t_c#", Cross(a, g.platform_point), number + 1)
+    return Column(velocity, tuple(Dot(a, n) for n in directions), g.size)
 
 
-def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:
+def direction(book: Book, g: LegGeometry, axis: int) -> VectorSymbol:
     """A coordinate direction of the last link."""
     symbol = VectorSymbol(g.name(f"a_c{axis + 1}"))
-    if symbol.name in book.notation:
-        return symbol
-    components = (sp.Integer(int(i == axis)) for i in range(3))
-    return Writer(book, g, _TERMS).give("a_c#", frame, components, axis + 1)
+    if symbol.name not in book.notation:
+        components = (sp.Integer(int(i == axis)) for i in range(3))
+        Writer(book, g, _TERMS).give("a_c#", components, axis + 1)
+    return symbol
 
 
-class _WrenchWriter:
-    """Defines the wrenches reciprocal to auxiliary directions."""
-
-    def __init__(self, book: Book, g: LegGeometry, directions: list[Any], frame: str) -> None:
-        self.g, self.directions, self.frame = g, directions, frame
-        self.eq = Writer(book, g, _TERMS)
-
-    def reciprocal(
-        self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
-    ) -> tuple[Any, tuple[Any, ...]]:
-        """The reciprocal wrench of auxiliary direction k: force, moment coefficients."""
-        value = DualVector(sp.Integer(k), *screws)
-        force = self.eq("f_c#", value, k + 1, body=self.frame)
-        duals = (DualScalar(sp.Integer(k), sp.Integer(i), *screws) for i in range(transmitted))
-        return force, tuple(self.eq("m#_c%", dual, i, k + 1) for i, dual in enumerate(duals, 1))
-
-    def of_unit_size(
-        self, k: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
-    ) -> ConstraintWrench:
-        """The same wrench for a force, or a moment, of size one."""
-        number, acts, of_force = k + 1, auxiliary.acts, auxiliary.of_force
-        size = self._size(number, auxiliary, force, coefficients)
-        n = self.eq("n_c#", force / size, number, body=self.frame)
-        moments = tuple(
-            self.eq("mu#_c%", coefficient / size, i, number)
-            for i, coefficient in enumerate(coefficients, 1)
-        )
-        if not moments:
-            return ConstraintWrench(n, acts=acts, of_moment=not of_force)
-        total = vector_sum(m * n for m, n in zip(moments, self.directions, strict=True))
-        moment = self.eq("mu_c#", total, number, body=self.frame)
-        return ConstraintWrench(n, moments, moment, acts, not of_force)
-
-    def _size(
-        self, number: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
-    ) -> Any:
-        """Size of the force, or of the moment: singular where it vanishes."""
-        if auxiliary.of_force:
-            size, what, slides_unit, turns_unit = norm(force), "force", 0, -1
-        else:
-            size, what, slides_unit, turns_unit = _size(coefficients), "moment", 1, 0
-        power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
-        regular = Condition(FailureStatus.SINGULAR, size, self.g.size**power_of_length)
-        return self.eq("size_c#", size, number, what, conditions=(regular,))
+def _of_unit_size(
+    eq: Writer,
+    k: int,
+    auxiliary: Auxiliary,
+    force: Any,
+    coefficients: tuple[Any, ...],
+    directions: list[Any],
+) -> ConstraintWrench:
+    """The same wrench for a force, or a moment, of size one."""
+    acts, of_moment = auxiliary.acts, not auxiliary.of_force
+    size = _size(eq, k, auxiliary, force, coefficients)
+    n = eq("n_c#", force / size, k)
+    moments = tuple(eq("mu#_c%", m / size, i, k) for i, m in enumerate(coefficients, 1))
+    if not moments:
+        return ConstraintWrench(n, acts=acts, of_moment=of_moment)
+    total = vector_sum(m * n for m, n in zip(moments, directions, strict=True))
+    return ConstraintWrench(n, moments, eq("mu_c#", total, k), acts, of_moment)
 
 
-def _size(coefficients: tuple[Any, ...]) -> Any:
-    """Size of a moment by its parts along orthonormal directions; a single one keeps its sign."""
-    return (
-        coefficients[0]
-        if len(coefficients) == 1
-        else sp.sqrt(sp.Add(*(a**2 for a in coefficients)))
-    )
+def _size(
+    eq: Writer, k: int, auxiliary: Auxiliary, force: Any, coefficients: tuple[Any, ...]
+) -> Any:
+    """Size of the force, or of the moment: singular where it vanishes.
+
+    That of a moment is by its parts along orthonormal directions; a single one keeps its sign.
+    """
+    assert eq.g is not None
+    size, what, power = norm(force), "force", 0
+    if not auxiliary.of_force:
+        squares = (a**2 for a in coefficients)
+        size = coefficients[0] if len(coefficients) == 1 else sp.sqrt(sp.Add(*squares))
+        what, power = "moment", 1
+    power_of_length = power - (auxiliary.kind is not Kind.SLIDE)
+    regular = Condition(FailureStatus.SINGULAR, size, eq.g.size**power_of_length)
+    return eq("size_c#", size, k, what, conditions=(regular,))

@@ -2,9 +2,10 @@
 
 A row has name | symbol | law, role, marks | reference; below it stands the meaning.  The
 marks # % & stand for numbers, of joints mostly: `v_#` is `v_2` for joint 2.  What has no law
-is given; where a reference would stand is the unit of what is no parameter.  After a
-colon a name may say which of several rows it is.  After a semicolon stands
+is given; where a reference would stand is the unit of what is no parameter.  After an @
+stands the frame in which a vector or tensor is naturally observed, after a semicolon
 the symbol of the first coefficient of what depends on the acceleration.
+After a colon a name may say which of several rows it is.
 Without a meaning of its own it is what its role says.
 """
 
@@ -12,12 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, Role
-from pne_sym.model.joint_kinds import JointKind
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.model.leg_types import a_leg
 from pne_sym.vector import TensorSymbol, Vector, VectorSymbol, ZeroTensor, ZeroVector
 
 _MARKS = "#%&"
@@ -31,6 +33,7 @@ class Term:
         latex, law, role, reference, meaning: of the quantity.
         unit: of an input; U is that of its joint's displacement.
         coefficient: LaTeX of its first coefficient.
+        frame: in which it is naturally observed: see `Writer.frame`.
         parameter: it is constant: made of parameters alone.
         symmetric: it is a symmetric tensor.
     """
@@ -44,6 +47,7 @@ class Term:
     parameter: bool = False
     symmetric: bool = False
     unit: str = ""
+    frame: str = ""
 
     def numbered(self, numbers: Sequence[Any]) -> Term:
         """With numbers in the places of the marks."""
@@ -58,6 +62,12 @@ def filled(text: str, numbers: Sequence[Any]) -> str:
     for mark, number in zip(_MARKS, numbers, strict=False):
         text = text.replace(mark, str(number))
     return text
+
+
+def is_named(value: Any) -> bool:
+    """Whether a value is a symbol, or zero, which needs no name."""
+    named = isinstance(value, sp.Symbol | VectorSymbol | TensorSymbol)
+    return named or value in (0, ZeroVector, ZeroTensor)
 
 
 def glossary(table: str) -> dict[str, Term]:
@@ -91,23 +101,14 @@ def _term(cells: list[str], meaning: str) -> Term:
         "constant" in words,
         "symmetric" in words,
         "" if law else reference,
+        next((word[1:] for word in words if word.startswith("@")), ""),
     )
-
-
-class Named(Protocol):
-    """What tells names of leg types apart: see `leg_geometry.LegGeometry`."""
-
-    def name(self, stem: str) -> str:
-        """The stem with the leg type's name, and the names of joints."""
-
-    def kind(self, j: int) -> JointKind:
-        """Kind of joint j."""
 
 
 class Writer:
     """Writes equations of a leg, or of the platform: names, symbols, meanings stand in a table."""
 
-    def __init__(self, book: Book, g: Named | None, table: Mapping[str, Term]) -> None:
+    def __init__(self, book: Book, g: LegGeometry | None, table: Mapping[str, Term]) -> None:
         self.book, self.g, self.table = book, g, table
 
     def __call__(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
@@ -126,6 +127,7 @@ class Writer:
             "joint": numbers[0] if term.role and numbers else 0,
             "parameter": term.parameter,
             "symmetric": term.symmetric,
+            "body": self.frame(term, numbers),
             **facts,
         }
         title, law = told.pop("title", term.meaning), told.pop("law", term.law)
@@ -135,10 +137,31 @@ class Writer:
 
     def named(self, stem: str, rhs: Any, *numbers: Any, **facts: Any) -> Any:
         """The same, unless it is zero or has a name already."""
-        named = isinstance(rhs, sp.Symbol | VectorSymbol | TensorSymbol)
-        if named or rhs in (0, ZeroVector, ZeroTensor):
-            return rhs
-        return self(stem, rhs, *numbers, **facts)
+        return rhs if is_named(rhs) else self(stem, rhs, *numbers, **facts)
+
+    def chapter(self, letter: str, title: str, text: str) -> None:
+        """Open a chapter of the leg type; & in the title stands for the leg."""
+        assert self.g is not None
+        of = self.g.leg_type
+        title = title.replace("&", a_leg(of.architecture))
+        self.book.chapter(f"{of.name}-{letter}", title, text, of.name)
+
+    def frame(self, term: Term, numbers: Sequence[Any]) -> str | None:
+        """The frame that a row has after an @; None if it has none.
+
+        It is that of base or platform, or of a link's axes: tip, the last one's; link, those of
+        link #; before, of the link before joint #; turn, of that turned to the axis of joint #;
+        own, as the specification has those of link #; last, as it has those of the last link;
+        leg, those of the leg.
+        """
+        word, g = term.frame, self.g
+        if g is None or word in ("", "base", "platform"):
+            return word or None
+        if word == "turn":
+            return g.frame("turn", numbers[0])
+        ends = {"tip": g.count, "last": g.count, "leg": 0}
+        j = ends[word] if word in ends else numbers[0] - (word == "before")
+        return g.frame("spec" if word in ("last", "own", "leg") else "axes", g.group[j])
 
     def _name(self, stem: str, numbers: Sequence[Any] = ()) -> str:
         """The name, in this leg type."""
@@ -150,31 +173,36 @@ class Writer:
         of_joint = self.g.kind(numbers[0]).unit if self.g and term.unit else ""
         return term.unit.replace("U", of_joint) or "-"
 
-    def give(self, stem: str, frame: str, components: Iterable[Any], *numbers: Any) -> VectorSymbol:
-        """Introduce a vector with its components, fixed in a frame; returns its symbol."""
-        symbol = VectorSymbol(self._name(stem, numbers))
-        self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
-        return symbol
+    def give(
+        self,
+        stem: str,
+        components: Iterable[Any],
+        *numbers: Any,
+        frame: str | None = None,
+        symmetric: bool = True,
+    ) -> Any:
+        """Introduce a vector, or a tensor, with its components in a frame; returns its symbol.
+
+        Args:
+            stem: a name of the table.
+            components: three of a vector, nine of a tensor.
+            numbers: for the marks of its row.
+            frame: in which it is fixed, where the row does not say it.
+            symmetric: it is a symmetric tensor.
+        """
+        parts, name = tuple(components), self._name(stem, numbers)
+        symbol = VectorSymbol(name) if len(parts) == 3 else TensorSymbol(name, symmetric)
+        frame = frame or self.frame(self.table[stem], numbers)
+        assert frame is not None, stem
+        return self.book.give(symbol, frame, parts, self._quantity(stem, frame, numbers))
 
     def given(self, stem: str, active: str) -> Vector:
         """Introduce a vector that is an input, by its components along the active base axes."""
         if not active:
             return ZeroVector
         parts = (sp.Symbol(f"{stem}_{a}", real=True) if a in active else sp.S.Zero for a in "xyz")
-        return self.give(stem, "base", parts)
-
-    def give_tensor(
-        self,
-        stem: str,
-        frame: str,
-        components: Iterable[Any],
-        *numbers: Any,
-        symmetric: bool = True,
-    ) -> TensorSymbol:
-        """The same of a tensor."""
-        symbol = TensorSymbol(self._name(stem, numbers), symmetric)
-        self.book.give(symbol, frame, tuple(components), self._quantity(stem, frame, numbers))
-        return symbol
+        vector: Vector = self.give(stem, parts, frame="base")
+        return vector
 
     def note(self, stem: str, *numbers: Any) -> sp.Symbol:
         """Introduce a scalar that is an input; returns its symbol."""

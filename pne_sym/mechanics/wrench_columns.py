@@ -18,9 +18,9 @@ from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, ZeroVector
 
 _TERMS = glossary(r"""
-H_a_#    | \mathbf H_{\alpha,#}  | ASSEMBLY | Eq. 34
+H_a_#    | \mathbf H_{\alpha,#}  | ASSEMBLY @base | Eq. 34
     moment of the column's unit force about the platform origin
-Hk_a_#   | \mathbf H_{k\alpha,#} | ASSEMBLY | Eq. 34
+Hk_a_#   | \mathbf H_{k\alpha,#} | ASSEMBLY @base | Eq. 34
     moment of the column's unit force about the platform origin
 phi_c#   | \chi_{#}  | LOOP_CLOSURE | Eq. 37
     loop-closure residual along the constraint force
@@ -93,7 +93,7 @@ class ColumnWriter:
         if self.put.space.rotates:
             total = Cross(leg.g.platform_point, force) + moment
             eq = Writer(self.book, leg.g, _TERMS)
-            about_origin = eq(f"{array}_a_#", total, number, body="base")
+            about_origin = eq(f"{array}_a_#", total, number)
             self.put.leg_column(array, leg, about_origin, 3, places)
 
     def _constrained_extras(self, leg: Leg, constraint: ConstraintWrench, places: Rows) -> None:

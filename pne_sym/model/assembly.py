@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pne_sym.model.closure import least_norm, leg_residual, solve
-from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, pose_at, skew
+from pne_sym.model.closure import leg_closed, leg_residual
+from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, pose_at
 from pne_sym.model.limits import margin
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Leg
@@ -45,7 +45,7 @@ def closures(leg: Leg, pose: Pose, given: Array, middle: Array) -> list[Array]:
     for q in _iterated(leg, pose, _guesses(leg, given, free, size), free, size):
         if len(near) < _MOST_SOLUTIONS and all(distance(leg, q, other) > _SAME for other in near):
             near.append(q)
-    found = [_polished(leg, pose, q, free) for q in near]
+    found = [leg_closed(leg, q, pose, free) for q in near]
     return sorted(found, key=lambda q: _unusual(leg, middle, q, size))
 
 
@@ -135,43 +135,7 @@ def _iterated(leg: Leg, pose: Pose, q: Array, free: Array, size: float) -> Array
 
 def _residuals(leg: Leg, pose: Pose, q: Array, size: float) -> tuple[Array, Array]:
     """Residuals (k, m) at displacements (k, n), lengths over the size, and Jacobians (k, m, n)."""
-    count = len(q)
-    rotation = np.tile(np.array(leg.base_frame), (count, 1, 1))
-    point = np.tile(np.array(leg.base_point), (count, 1))
-    origins, axes = [], []
-    for joint, x in zip(leg.joints, q.T, strict=True):
-        origins.append(point + rotation @ np.array(joint.offset))
-        axes.append(rotation @ np.array(joint.axis))
-        point = origins[-1] + (joint.advance * x)[:, None] * axes[-1]
-        if joint.turns:
-            cross, angle = skew(np.array(joint.axis)), (joint.turn * x)[:, None, None]
-            turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
-            rotation = rotation @ turn
-    tip = point + rotation @ np.array(leg.platform_joint.offset)
-    residuals = [(tip - pose.t - pose.R @ np.array(leg.platform_point)) / size]
-    spins = [joint.turn * axis for joint, axis in zip(leg.joints, axes, strict=True)]
-    moves = [
-        (joint.advance * axis + np.cross(spin, tip - origin)) / size
-        for joint, axis, spin, origin in zip(leg.joints, axes, spins, origins, strict=True)
-    ]
-    rows = [np.stack(moves, axis=-1)]
-    for condition in leg.platform_joint.closures:
-        a, b = rotation @ np.array(condition.link), pose.R @ np.array(condition.platform)
-        turned = np.stack([np.cross(spin, a) for spin in spins], axis=-1)
-        if condition.perpendicular:
-            residuals.append((a @ b)[:, None])
-            rows.append((b @ turned)[:, None, :])
-        else:
-            residuals.append(a - b)
-            rows.append(turned)
-    return np.concatenate(residuals, axis=1), np.concatenate(rows, axis=1)
-
-
-def _polished(leg: Leg, pose: Pose, guess: Array, free: Array) -> Array:
-    """The solution to rounding; angles of hinges within half a turn."""
-
-    def step(q: Array) -> Array:
-        residual, by_q, _ = leg_residual(leg, q, pose)
-        return least_norm(by_q * free, -residual)
-
-    return solve(lambda q: leg_residual(leg, q, pose)[0], step, np.add, guess)
+    residual, by_q, _ = leg_residual(leg, q, pose)
+    residual[:, :3] /= size
+    by_q[:, :3] /= size
+    return residual, by_q

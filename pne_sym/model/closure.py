@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, skew
 from pne_sym.model.manipulator import Leg
@@ -16,6 +17,7 @@ from pne_sym.model.manipulator import Leg
 Residual = Callable[[Array], Array]
 Step = Callable[[Array], Array]
 Move = Callable[[Array, Array], Array]
+Flags = npt.NDArray[np.bool_]
 
 CLOSED = 1e-12
 """Residual to which a home is polished, relative to the size where that exceeds 1 m."""
@@ -30,12 +32,12 @@ def leg_residual(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
 
     Args:
         leg: the leg.
-        q: displacements of its joints.
+        q: displacements (..., n) of its joints.
         pose: of the platform.
 
     Returns:
-        the residual (points in m, then axes), its Jacobian by q, and by the
-        platform's twist (6 columns).
+        the residual (..., m) (points in m, then axes), its Jacobian by q (..., m, n), and by the
+        platform's twist (..., m, 6).
     """
     chain = chain_pose(leg, q, base_of(leg))
     arm = pose.R @ np.array(leg.platform_point)
@@ -44,17 +46,33 @@ def leg_residual(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
     by_twist = [np.hstack([-np.eye(3), skew(arm)])]
     for condition in leg.platform_joint.closures:
         a, b = chain.last @ np.array(condition.link), pose.R @ np.array(condition.platform)
-        a_by_q = np.cross(chain.spins.T, a).T
+        a_by_q = np.cross(chain.spins, a[..., None], axis=-2)
         b_by_twist = np.hstack([np.zeros((3, 3)), -skew(b)])
         if condition.perpendicular:
-            residuals.append(np.array([a @ b]))
-            by_q.append((b @ a_by_q)[None, :])
-            by_twist.append((a @ b_by_twist)[None, :])
+            residuals.append((a @ b)[..., None])
+            by_q.append((b @ a_by_q)[..., None, :])
+            by_twist.append((a @ b_by_twist)[..., None, :])
         else:
             residuals.append(a - b)
             by_q.append(a_by_q)
             by_twist.append(-b_by_twist)
-    return np.concatenate(residuals), np.vstack(by_q), np.vstack(by_twist)
+    states = chain.tip.shape[:-1]
+    rows = [np.broadcast_to(r, (*states, *r.shape[-2:])) for r in by_twist]
+    return (
+        np.concatenate(residuals, axis=-1),
+        np.concatenate(by_q, axis=-2),
+        np.concatenate(rows, axis=-2),
+    )
+
+
+def leg_closed(leg: Leg, q: Array, pose: Pose, free: Flags) -> Array:
+    """Displacements that close a leg at a pose, as far as its free joints can."""
+
+    def step(x: Array) -> Array:
+        residual, by_q, _ = leg_residual(leg, x, pose)
+        return least_norm(by_q * free, -residual)
+
+    return solve(lambda x: leg_residual(leg, x, pose)[0], step, np.add, q)
 
 
 def solve(residual: Residual, step: Step, move: Move, x: Array) -> Array:

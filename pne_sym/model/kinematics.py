@@ -135,11 +135,15 @@ def rotation_of_quaternion(quaternion: Sequence[float]) -> Array:
     )
 
 
-def rotation_about(axis: Sequence[float] | Array, angle: float) -> Array:
-    """The rotation about a unit axis (Rodrigues' formula)."""
+def rotation_about(axis: Sequence[float] | Array, angle: float | Array) -> Array:
+    """The rotation about a unit axis (Rodrigues' formula); rotations by an array of angles."""
     k = skew(np.asarray(axis, dtype=float))
-    result: Array = np.eye(3) + math.sin(angle) * k
-    return result + (1.0 - math.cos(angle)) * (k @ k)
+    if np.ndim(angle):
+        sine, cosine = (of(angle)[..., None, None] for of in (np.sin, np.cos))
+    else:  # by libm, whose digits NumPy does not promise
+        sine, cosine = np.array((math.sin(angle), math.cos(angle)))
+    result: Array = np.eye(3) + sine * k
+    return result + (1.0 - cosine) * (k @ k)
 
 
 def skew(a: Array) -> Array:
@@ -150,6 +154,8 @@ def skew(a: Array) -> Array:
 @dataclass(frozen=True)
 class ChainPose:
     """A leg's chain of joints at given displacements, from where it begins.
+
+    Of many states at once vectors are (..., 3) and rotations (..., 3, 3).
 
     Attributes:
         joints: of the leg, n of them.
@@ -174,31 +180,37 @@ class ChainPose:
 
     @property
     def spins(self) -> Array:
-        """Angular velocity of the last link per joint rate, (3, n)."""
-        return np.array([a * j.turn for j, a in zip(self.joints, self.axes, strict=True)]).T
+        """Angular velocity of the last link per joint rate, (..., 3, n)."""
+        pairs = zip(self.joints, self.axes, strict=True)
+        return np.moveaxis(np.array([axis * joint.turn for joint, axis in pairs]), 0, -1)
 
     @property
     def velocities(self) -> Array:
-        """Velocity of the tip per joint rate, (3, n) (method: the v_j)."""
+        """Velocity of the tip per joint rate, (..., 3, n) (method: the v_j)."""
         columns = []
         for joint, axis, origin in zip(self.joints, self.axes, self.origins, strict=True):
             column = joint.advance * axis
             if joint.turns:
                 column = column + joint.turn * np.cross(axis, self.tip - origin)
             columns.append(column)
-        return np.array(columns).T
+        return np.moveaxis(np.array(columns), 0, -1)
 
 
 def chain_pose(leg: Leg, q: Sequence[float] | Array, start: Pose = ORIGIN) -> ChainPose:
-    """The chain of a leg at displacements q; in leg axes, or from the pose of its base frame."""
-    point, rotation = start.t, start.R
+    """The chain of a leg at displacements q (..., n); in leg axes, or from where its base is."""
+    q = np.asarray(q, dtype=float)
+    states = q.shape[:-1]
+    point, rotation = (
+        np.broadcast_to(start.t, (*states, 3)),
+        np.broadcast_to(start.R, (*states, 3, 3)),
+    )
     origins, points, axes, rotations = [], [], [], [rotation]
-    for joint, x in zip(leg.joints, q, strict=True):
+    for joint, x in zip(leg.joints, np.moveaxis(q, -1, 0), strict=True):
         origin = point + rotation @ np.array(joint.offset)
         axis = rotation @ np.array(joint.axis)
-        point = origin + joint.advance * float(x) * axis
+        point = origin + (joint.advance * x)[..., None] * axis
         if joint.turns:
-            rotation = rotation @ rotation_about(joint.axis, joint.turn * float(x))
+            rotation = rotation @ rotation_about(joint.axis, joint.turn * x)
         origins.append(origin)
         points.append(point)
         axes.append(axis)

@@ -6,13 +6,17 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from pne_sym.model.closure import least_norm, leg_residual, solve, unreachable
+from pne_sym.model.closure import (
+    Flags,
+    least_norm,
+    leg_closed,
+    leg_residual,
+    solve,
+    unreachable,
+)
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
 from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space, Vector3
-
-Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -103,19 +107,8 @@ class Loops:
 def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
     """Each leg closed by itself at the given pose, as far as it can."""
     pose = pose_at(loops.space, X.tolist(), loops.centre)
-    result = q.copy()
-    for leg, s in zip(loops.legs, loops.slices(), strict=True):
-        free = ~loops.extra[s]
-
-        def residual(x: Array, leg: Leg = leg) -> Array:
-            return leg_residual(leg, x, pose)[0]
-
-        def step(x: Array, leg: Leg = leg, free: Flags = free) -> Array:
-            residual, by_q, _ = leg_residual(leg, x, pose)
-            return least_norm(by_q * free, -residual)
-
-        result[s] = solve(residual, step, np.add, q[s])
-    return result
+    pairs = zip(loops.legs, loops.slices(), strict=True)
+    return np.concatenate([leg_closed(leg, q[s], pose, ~loops.extra[s]) for leg, s in pairs])
 
 
 def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
