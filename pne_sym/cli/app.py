@@ -7,10 +7,10 @@ import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-import typer.core
+import click
+from click.exceptions import Exit
 
 from pne_sym import comparison, writer
 from pne_sym.backends import registry
@@ -18,7 +18,7 @@ from pne_sym.cli import drawing, homes, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug, unset
+from pne_sym.cli.options import Decorator, debug_flag, flag, valued
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
@@ -26,66 +26,60 @@ if TYPE_CHECKING:
 # The compiler is imported inside the commands: it brings SymPy, which
 # `--help`, `--version` and a mistyped option need not wait for.
 
-app = typer.Typer(
-    add_completion=False,
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    subcommand_metavar="NAME_OR_SPEC... | COMMAND [ARGUMENTS]",
-)
 
-
-def _folder(name: str | Path) -> Path:
+def _folder(_context: click.Context, _option: click.Parameter, name: str) -> Path:
     """The path of an option; an empty one, as of a variable not set, is not the working folder."""
     if name == "":
-        raise typer.BadParameter("the name of the folder is empty; . is the working folder")
+        raise click.BadParameter("the name of the folder is empty; . is the working folder")
     return Path(name)
 
 
-Out = Annotated[
-    Path,
-    typer.Option(
-        "--out",
-        "-o",
-        metavar="DIR",
-        parser=_folder,
-        help="Folder in which each model gets a folder of its own.",
-    ),
-]
-Jobs = Annotated[
-    int,
-    typer.Option("--jobs", "-j", min=1, metavar="N", help="Models worked on at the same time."),
-]
 TARGETS = (
     "What code to write, names with commas between: "
     + "; ".join(f"{t.name}: {t.title}" for t in registry.TARGETS if not t.always)
     + ". Derivation and manifest are always written."
 )
-Target = Annotated[str, typer.Option("--target", metavar="NAMES", help=TARGETS)]
-Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Tell only errors, warnings and differences.")
-]
-
-DEFAULT_OUT = Path("generated")
 DEFAULT_TARGETS = ",".join(registry.default())
 ALL_CORES = os.cpu_count() or 1
 
+out_option = valued(
+    "--out -o DIR",
+    "Folder in which each model gets a folder of its own.",
+    callback=_folder,
+    default="generated",
+    show_default=True,
+)
+target_option = valued("--target NAMES", TARGETS, default=DEFAULT_TARGETS, show_default=True)
+quiet_flag = flag("--quiet -q", "Tell only errors, warnings and differences.")
 
-class _ModelsCommand(typer.core.TyperCommand):
+
+def jobs_option(default: int) -> Decorator:
+    """How many models are worked on at once."""
+    says, least = "Models worked on at the same time.", click.IntRange(1)
+    return valued("--jobs -j N", says, type=least, default=default, show_default=True)
+
+
+class _ModelsCommand(click.Command):
     """The command whose name is its argument: the usage line has it once."""
 
     def collect_usage_pieces(self, *_: object) -> list[str]:
         return ["[OPTIONS]"]
 
 
-def _version(wanted: bool) -> None:
+class _Program(click.Group):
+    """Lists its commands in the order in which they are defined."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+
+def _version(context: click.Context, _option: click.Parameter, wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
         with told(debug=False):
             Report().line(f"pne-gen {version('pne-sym')}")
-        raise typer.Exit
+        context.exit()
 
 
 EXAMPLES = """
@@ -110,15 +104,21 @@ Exit codes:
 """
 
 
-@app.callback(epilog=EXAMPLES)
-def _program(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version", callback=_version, is_eager=True, help="Show the version and leave."
-        ),
-    ] = False,
-) -> None:
+@click.group(
+    cls=_Program,
+    epilog=EXAMPLES,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    subcommand_metavar="NAME_OR_SPEC... | COMMAND [ARGUMENTS]",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_version,
+    help="Show the version and leave.",
+)
+def app() -> None:
     """Closed-form dynamics of parallel manipulators.
 
     From a data file: a readable derivation, and NumPy and C code that stand alone.
@@ -126,20 +126,18 @@ def _program(
 
 
 @app.command(GENERATE, cls=_ModelsCommand)
-def generate(
-    sources: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="NAME_OR_SPEC",
-            show_default=False,
-            help="Names in the catalogue (see pne-gen list) or spec files (.toml, .json).",
-        ),
-    ],
-    out: Out = DEFAULT_OUT,
-    target: Target = DEFAULT_TARGETS,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
+@click.argument(
+    "sources",
+    metavar="NAME_OR_SPEC...",
+    nargs=-1,
+    required=True,
+    help="Names in the catalogue (see pne-gen list) or spec files (.toml, .json).",
+)
+@out_option
+@target_option
+@quiet_flag
+@debug_flag
+def generate(sources: tuple[str, ...], out: Path, target: str, quiet: bool, debug: bool) -> None:
     """Generate models.
 
     DIR/NAME/ gets the derivation (NAME.md), the NumPy code (NAME.py), the C code
@@ -155,13 +153,12 @@ def generate(
 
 
 @app.command("all")
-def generate_all(
-    out: Out = DEFAULT_OUT,
-    target: Target = DEFAULT_TARGETS,
-    jobs: Jobs = ALL_CORES,
-    quiet: Quiet = False,
-    debug: Debug = False,
-) -> None:
+@out_option
+@target_option
+@jobs_option(ALL_CORES)
+@quiet_flag
+@debug_flag
+def generate_all(out: Path, target: str, jobs: int, quiet: bool, debug: bool) -> None:
     """Generate the whole catalogue."""
     with told(debug=debug):
         names = registry.chosen(target)
@@ -171,7 +168,8 @@ def generate_all(
 
 
 @app.command("list")
-def list_models(debug: Debug = False) -> None:
+@debug_flag
+def list_models(debug: bool) -> None:
     """List the catalogue.
 
     Degrees of freedom at home, actuated joints by kind (P prismatic, R revolute, H
@@ -186,28 +184,24 @@ def list_models(debug: Debug = False) -> None:
 
 
 @app.command("check")
+@click.argument(
+    "sources",
+    metavar="[NAME_OR_SPEC]...",
+    nargs=-1,
+    help="Default: every model that stands in DIR, if the catalogue has them all; "
+    "models of your own are named by their spec files. all: the whole catalogue.",
+)
+@out_option
+@valued(
+    "--target NAMES",
+    "What code should stand there, as for generating. "
+    "Default: what each folder was generated with, as its manifest says.",
+)
+@jobs_option(1)
+@quiet_flag
+@debug_flag
 def check(
-    sources: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="NAME_OR_SPEC",
-            show_default=False,
-            help="Default: every model that stands in DIR, if the catalogue has them all; "
-            "models of your own are named by their spec files. all: the whole catalogue.",
-        ),
-    ] = None,
-    out: Out = DEFAULT_OUT,
-    target: Annotated[
-        str | None,
-        unset(
-            "--target NAMES",
-            "What code should stand there, as for generating. "
-            "Default: what each folder was generated with, as its manifest says.",
-        ),
-    ] = None,
-    jobs: Jobs = 1,
-    quiet: Quiet = False,
-    debug: Debug = False,
+    sources: tuple[str, ...], out: Path, target: str | None, jobs: int, quiet: bool, debug: bool
 ) -> None:
     """Tell what in DIR is not up to date.
 
@@ -216,17 +210,14 @@ def check(
     """
     with told(debug=debug):
         names = None if target is None else registry.chosen(target)
-        wanted = _wanted(sources or [], out)
+        wanted = _wanted(sources, out)
         models, report = _find(wanted), Report(quiet=quiet)
         if not _check(wanted, models, out, jobs=jobs, report=report, targets=names):
-            raise typer.Exit(DIFFERENT)
+            raise Exit(DIFFERENT)
 
 
-app.command("new")(starter.new)
-app.command("home")(homes.home)
-app.command("explain")(review.explain)
-app.command("diff")(review.diff)
-app.command("draw")(drawing.draw)
+for command in (starter.new, homes.home, review.explain, review.diff, drawing.draw):
+    app.add_command(command)
 
 
 def _catalogue() -> tuple[str, ...]:

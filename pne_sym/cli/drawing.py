@@ -3,83 +3,72 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
+import click
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
 from pne_sym.cli.numbers import table
-from pne_sym.cli.options import Debug, Quiet, Source, of_option, unset
+from pne_sym.cli.options import debug_flag, of_option, quiet_flag, source_argument, valued
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
-Out = Annotated[
-    Path | None,
-    unset(
-        "--out -o FILE",
-        "The picture: .svg, .png or .pdf; with --path .gif, or .mp4 where ffmpeg is "
-        "installed. Default: NAME.svg, NAME.gif.",
-    ),
-]
-Pose = Annotated[
-    str | None,
-    unset(
-        "--pose NUMBERS",
-        "The platform's pose, numbers with commas between (m, rad): x,y,z,roll,pitch,yaw "
-        "(fixed axes) or X itself, x,y,z,qx,qy,qz,qw; in the plane x,y,phi or x,y; without "
-        "rotation x,y,z; about a centre roll,pitch,yaw or the quaternion. Then the extra "
-        "coordinates, if there are any. Default: home.",
-    ),
-]
-Displacements = Annotated[
-    str | None,
-    unset(
-        "--q NUMBERS",
-        "Displacements of all joints, legs as in the spec and joints from the base, from "
-        "which the legs are closed at the pose. Default: found along the straight way from home.",
-    ),
-]
-Poses = Annotated[
-    Path | None,
-    unset(
-        "--path FILE.csv",
-        "Animate: a frame for each line, which holds the numbers of a pose as for --pose. "
-        "A first line of names and lines that begin with # are left out.",
-    ),
-]
-Fps = Annotated[
-    int, typer.Option("--fps", metavar="N", min=1, max=100, help="Frames per second, with --path.")
-]
-Azimuth = Annotated[
-    float | None,
-    unset(
-        "--azimuth DEGREES",
-        "Where to look from, counted from x towards y. Default: where the legs "
-        "hide each other least. Not in the plane.",
-    ),
-]
-Elevation = Annotated[
-    float | None,
-    unset(
-        "--elevation DEGREES",
-        "How far above the horizon to look from. Default: 20.",
-    ),
-]
 
-
+@click.command
+@source_argument
+@valued(
+    "--out -o FILE",
+    "The picture: .svg, .png or .pdf; with --path .gif, or .mp4 where ffmpeg is "
+    "installed. Default: NAME.svg, NAME.gif.",
+    type=Path,
+)
+@valued(
+    "--pose NUMBERS",
+    "The platform's pose, numbers with commas between (m, rad): x,y,z,roll,pitch,yaw "
+    "(fixed axes) or X itself, x,y,z,qx,qy,qz,qw; in the plane x,y,phi or x,y; without "
+    "rotation x,y,z; about a centre roll,pitch,yaw or the quaternion. Then the extra "
+    "coordinates, if there are any. Default: home.",
+)
+@valued(
+    "--q NUMBERS",
+    "Displacements of all joints, legs as in the spec and joints from the base, from "
+    "which the legs are closed at the pose. Default: found along the straight way from home.",
+)
+@valued(
+    "--path FILE.csv",
+    "Animate: a frame for each line, which holds the numbers of a pose as for --pose. "
+    "A first line of names and lines that begin with # are left out.",
+    type=Path,
+)
+@valued(
+    "--fps N",
+    "Frames per second, with --path.",
+    type=click.IntRange(1, 100),
+    default=25,
+    show_default=True,
+)
+@valued(
+    "--azimuth DEGREES",
+    "Where to look from, counted from x towards y. Default: where the legs "
+    "hide each other least. Not in the plane.",
+    type=float,
+)
+@valued("--elevation DEGREES", "How far above the horizon to look from. Default: 20.", type=float)
+@quiet_flag
+@debug_flag
 def draw(  # noqa: PLR0913, PLR0917 - an option each
-    source: Source,
-    out: Out = None,
-    pose: Pose = None,
-    q: Displacements = None,
-    path: Poses = None,
-    fps: Fps = 25,
-    azimuth: Azimuth = None,
-    elevation: Elevation = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
+    source: str,
+    out: Path | None,
+    pose: str | None,
+    q: str | None,
+    path: Path | None,
+    fps: int,
+    azimuth: float | None,
+    elevation: float | None,
+    quiet: bool,
+    debug: bool,
 ) -> None:
     """Draw a manipulator: a picture at a pose, or an animation of a path.
 

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Iterator
 from typing import TextIO
 
-import typer
+from click.exceptions import Exit
 
 from pne_sym.backends.target import TargetError
 from pne_sym.cli.console import discard_output, flush_output, print_error, print_note, print_warning
@@ -31,7 +31,7 @@ def told(*, debug: bool) -> Iterator[None]:
         debug: show the traceback of an internal error.
 
     Raises:
-        typer.Exit: with the exit code, for any error.
+        Exit: with the exit code, for any error.
     """
     from pne_sym.generation import InputError
     from pne_sym.model.errors import SpecError, SpecNote, SpecWarning
@@ -43,21 +43,21 @@ def told(*, debug: bool) -> Iterator[None]:
             warnings.showwarning = _show_warning
             with _output_complete():
                 yield
-    except typer.Exit:
+    except Exit:
         raise
     except (InputError, SpecError, OutputError, TargetError) as error:
         print_error(str(error))
-        raise typer.Exit(INPUT_AT_FAULT) from error
+        raise Exit(INPUT_AT_FAULT) from error
     except KeyboardInterrupt as error:
         print_error("interrupted")
-        raise typer.Exit(INTERRUPTED) from error
+        raise Exit(INTERRUPTED) from error
     except BrokenPipeError as error:
         # Nobody is left to tell.  The work may not be done, nor is the answer known: not 0.
         discard_output()
-        raise typer.Exit(READER_LEFT) from error
+        raise Exit(READER_LEFT) from error
     except Exception as error:
         _tell_internal_error(error, debug=debug)
-        raise typer.Exit(INTERNAL_ERROR) from error
+        raise Exit(INTERNAL_ERROR) from error
 
 
 @contextlib.contextmanager
@@ -65,7 +65,7 @@ def _output_complete() -> Iterator[None]:
     """Write what is left of the output where its faults can still be told, not at exit."""
     try:
         yield
-    except typer.Exit:
+    except Exit:
         flush_output()
         raise
     flush_output()

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
+import click
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
-from pne_sym.cli.options import Debug, Source
+from pne_sym.cli.options import debug_flag, source_argument
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
 
-def home(source: Source, debug: Debug = False) -> None:
+@click.command
+@source_argument
+@debug_flag
+def home(source: str, debug: bool) -> None:
     """List the closures of all legs at home, and the assembly branch that home selects.
 
     A line of numbers is q of a leg at the pose home.X, as the specification may state it;
@@ -30,6 +33,8 @@ def home(source: Source, debug: Debug = False) -> None:
 
 
 def _closures(m: Manipulator) -> Iterator[str]:
+    import numpy as np
+
     from pne_sym.model.assembly import all_closures, distance
     from pne_sym.model.home import principal
     from pne_sym.model.loops import Loops
@@ -60,4 +65,6 @@ def _branches(m: Manipulator) -> Iterator[str]:
 
 
 def _listed(values: object) -> str:
+    import numpy as np
+
     return "[" + ", ".join(f"{x:.10g}" for x in np.round(np.asarray(values), 12) + 0.0) + "]"

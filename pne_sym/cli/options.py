@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
 from pne_sym.cli.numbers import numbers
 
@@ -12,13 +13,27 @@ if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
 
-def unset(usage: str, says: str) -> Any:
-    """An option without a default: its names and what its value is called; what it says of itself.
+Decorator = Callable[[Any], Any]
 
-    Such as "--out -o FILE".
+
+def valued(usage: str, says: str, **more: Any) -> Decorator:
+    """An option with a value: its names, what its value is called, its name in the function.
+
+    Such as "--out -o FILE" or "--as PATH label".
+
+    Args:
+        usage: the words.
+        says: what it says of itself.
+        more: as Click takes it; without a default there is none.
     """
-    *names, value = usage.split()
-    return typer.Option(*names, metavar=value, show_default=False, help=says)
+    names = [word for word in usage.split() if word.startswith("-")]
+    value, *own = [word for word in usage.split() if not word.startswith("-")]
+    return click.option(*names, *own, metavar=value, help=says, **more)
+
+
+def flag(usage: str, says: str) -> Decorator:
+    """An option without a value: its names and, where it is another, its name in the function."""
+    return click.option(*usage.split(), is_flag=True, help=says)
 
 
 def of_option(option: str, text: str, pose_of: Manipulator | None = None) -> list[float]:
@@ -40,12 +55,9 @@ def of_option(option: str, text: str, pose_of: Manipulator | None = None) -> lis
         raise InputError(f"{option}: {error}") from error
 
 
-Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an internal error.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Tell only warnings.")]
+debug_flag = flag("--debug", "Show the traceback of an internal error.")
+quiet_flag = flag("--quiet -q", "Tell only warnings.")
 
-Source = Annotated[
-    str,
-    typer.Argument(
-        metavar="NAME_OR_SPEC", help="A name in the catalogue or a spec file (.toml, .json)."
-    ),
-]
+source_argument = click.argument(
+    "source", metavar="NAME_OR_SPEC", help="A name in the catalogue or a spec file (.toml, .json)."
+)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
+import click
+from click.exceptions import Exit
 
 from pne_sym.backends import registry
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug, unset
-from pne_sym.cli.options import Source as Specification
+from pne_sym.cli.options import debug_flag, flag, source_argument, valued
 
 if TYPE_CHECKING:
     from pne_sym.review.collection import Options
@@ -19,34 +19,24 @@ if TYPE_CHECKING:
     from pne_sym.review.sources import Source
 
 
-Equation = Annotated[
-    str | None,
-    typer.Argument(
-        metavar="EQUATION",
-        show_default=False,
-        help="Its id, such as ups-root_1, or the name it defines. Default: list all.",
-    ),
-]
-Stage = Annotated[
-    str | None,
-    unset(
-        "--stage STAGE",
-        "spec: the specification's full form (JSON). derivation: the equation. "
-        f"{', '.join(registry.stages()[2:])}: its statements. "
-        "Default: the equation and the program's.",
-    ),
-]
-Transitively = Annotated[
-    bool, typer.Option("--all", "-a", help="Follow what it uses and what uses it to the end.")
-]
-
-
+@click.command
+@source_argument
+@click.argument(
+    "equation",
+    metavar="[EQUATION]",
+    required=False,
+    help="Its id, such as ups-root_1, or the name it defines. Default: list all.",
+)
+@valued(
+    "--stage STAGE",
+    "spec: the specification's full form (JSON). derivation: the equation. "
+    f"{', '.join(registry.stages()[2:])}: its statements. "
+    "Default: the equation and the program's.",
+)
+@flag("--all -a transitively", "Follow what it uses and what uses it to the end.")
+@debug_flag
 def explain(
-    source: Specification,
-    equation: Equation = None,
-    stage: Stage = None,
-    transitively: Transitively = False,
-    debug: Debug = False,
+    source: str, equation: str | None, stage: str | None, transitively: bool, debug: bool
 ) -> None:
     """Explain an equation of a derivation.
 
@@ -84,49 +74,48 @@ _VERSION = (
 )
 
 
-Before = Annotated[str, typer.Argument(metavar="A", help=_VERSION)]
-After = Annotated[str, typer.Argument(metavar="B", help="Likewise.")]
-Json = Annotated[bool, typer.Option("--json", help="Answer in JSON.")]
-Markdown = Annotated[
-    bool, typer.Option("--markdown", help="Answer in Markdown, for a pull request.")
-]
-Tolerance = Annotated[
-    float,
-    typer.Option("--tolerance", min=0.0, help="Relative; values nearer than this are equal."),
-]
-Run = Annotated[
-    bool,
-    typer.Option(
-        "--run",
-        help="Execute the Python, and compile and execute the C, of folders: only of those "
-        "whose code you would run.",
-    ),
-]
-WithC = Annotated[
-    bool, typer.Option("--c/--no-c", help="With --run: compile and execute the C too.")
-]
-Label = Annotated[
-    list[str] | None,
-    unset(
-        "--as PATH",
-        "What A and B are called: a/PATH, b/PATH; twice where B was renamed. For git, which "
-        "names temporary files.",
-    ),
-]
-Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")]
-
-
+@click.command
+@click.argument("before", metavar="A", help=_VERSION)
+@click.argument("after", metavar="B", help="Likewise.")
+@flag("--json as_json", "Answer in JSON.")
+@flag("--markdown as_markdown", "Answer in Markdown, for a pull request.")
+@valued(
+    "--tolerance NUMBER",
+    "Relative; values nearer than this are equal.",
+    type=click.FloatRange(0.0),
+    default=1e-9,
+    show_default=True,
+)
+@flag(
+    "--run",
+    "Execute the Python, and compile and execute the C, of folders: only of those "
+    "whose code you would run.",
+)
+@click.option(
+    "--c/--no-c",
+    default=True,
+    show_default=True,
+    help="With --run: compile and execute the C too.",
+)
+@valued(
+    "--as PATH label",
+    "What A and B are called: a/PATH, b/PATH; twice where B was renamed. For git, which "
+    "names temporary files.",
+    multiple=True,
+)
+@flag("--quiet -q", "Tell only by exit code.")
+@debug_flag
 def diff(  # noqa: PLR0913, PLR0917 - one option each
-    before: Before,
-    after: After,
-    as_json: Json = False,
-    as_markdown: Markdown = False,
-    tolerance: Tolerance = 1e-9,
-    run: Run = False,
-    c: WithC = True,
-    label: Label = None,
-    quiet: Silent = False,
-    debug: Debug = False,
+    before: str,
+    after: str,
+    as_json: bool,
+    as_markdown: bool,
+    tolerance: float,
+    run: bool,
+    c: bool,
+    label: tuple[str, ...],
+    quiet: bool,
+    debug: bool,
 ) -> None:
     """Compare two versions of a model by meaning.
 
@@ -158,7 +147,7 @@ def diff(  # noqa: PLR0913, PLR0917 - one option each
         for line in () if quiet else lines:
             Report().difference(line)
         if not equal:
-            raise typer.Exit(DIFFERENT)
+            raise Exit(DIFFERENT)
 
 
 def _answer(

@@ -4,95 +4,72 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
+import click
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
-from pne_sym.cli.options import Debug, Quiet, of_option, unset
+from pne_sym.cli.options import debug_flag, flag, of_option, quiet_flag, valued
 
 if TYPE_CHECKING:
     from pne_sym.starter.points import Geometry
 
 
-Points = Annotated[
-    Path | None,
-    unset(
-        "--points FILE.csv",
-        "Joint points (m), a row for each leg: base point in the base frame, platform point "
-        "in the platform frame; x,y,z,x,y,z, in the plane x,y,x,y.",
-    ),
-]
-Radii = Annotated[
-    str | None,
-    unset(
-        "--radii BASE,PLATFORM",
-        "Joint points on two circles of these radii (m), at --base-angles and --platform-angles.",
-    ),
-]
-BaseAngles = Annotated[
-    str | None,
-    unset(
-        "--base-angles NUMBERS",
-        "With --radii: an angle (degrees) for each leg's base point.",
-    ),
-]
-PlatformAngles = Annotated[
-    str | None,
-    unset(
-        "--platform-angles NUMBERS",
-        "The same for the platform points. Default: those of the base.",
-    ),
-]
-Height = Annotated[
-    float | None,
-    unset(
-        "--height METRES",
-        "With --points or --radii in space: the platform's origin above the base's at home.",
-    ),
-]
-
-
-Target = Annotated[
-    Path,
-    typer.Argument(
-        metavar="FILE.toml", help="The specification to be written; its name is the model's."
-    ),
-]
-Legs = Annotated[
-    str,
-    typer.Option(
-        "--legs",
-        metavar="LEGS",
-        help="The architecture, such as 6-UPS or 2-RPR+1-RRR: count, joints from the base, "
-        "platform joint. _ marks an actuated joint (6-U_PS), * an extra coordinate. "
-        "Without marks, actuators are chosen.",
-    ),
-]
-Space = Annotated[
-    str | None,
-    unset(
-        "--space SPACE",
-        "point, planar, spatial, translational or spherical. "
-        "Default: planar where the legs can move in the plane, else spatial.",
-    ),
-]
-Force = Annotated[bool, typer.Option("--force", "-f", help="Replace a file that stands there.")]
-
-
+@click.command
+@click.argument(
+    "path",
+    metavar="FILE.toml",
+    type=Path,
+    help="The specification to be written; its name is the model's.",
+)
+@valued(
+    "--legs LEGS",
+    "The architecture, such as 6-UPS or 2-RPR+1-RRR: count, joints from the base, "
+    "platform joint. _ marks an actuated joint (6-U_PS), * an extra coordinate. "
+    "Without marks, actuators are chosen.",
+    required=True,
+)
+@valued(
+    "--space SPACE",
+    "point, planar, spatial, translational or spherical. "
+    "Default: planar where the legs can move in the plane, else spatial.",
+)
+@valued(
+    "--points FILE.csv",
+    "Joint points (m), a row for each leg: base point in the base frame, platform point "
+    "in the platform frame; x,y,z,x,y,z, in the plane x,y,x,y.",
+    type=Path,
+)
+@valued(
+    "--radii BASE,PLATFORM",
+    "Joint points on two circles of these radii (m), at --base-angles and --platform-angles.",
+)
+@valued("--base-angles NUMBERS", "With --radii: an angle (degrees) for each leg's base point.")
+@valued(
+    "--platform-angles NUMBERS",
+    "The same for the platform points. Default: those of the base.",
+)
+@valued(
+    "--height METRES",
+    "With --points or --radii in space: the platform's origin above the base's at home.",
+    type=float,
+)
+@flag("--force -f", "Replace a file that stands there.")
+@quiet_flag
+@debug_flag
 def new(  # noqa: PLR0913, PLR0917 - an option each
-    path: Target,
-    legs: Legs,
-    space: Space = None,
-    points: Points = None,
-    radii: Radii = None,
-    base_angles: BaseAngles = None,
-    platform_angles: PlatformAngles = None,
-    height: Height = None,
-    force: Force = False,
-    quiet: Quiet = False,
-    debug: Debug = False,
+    path: Path,
+    legs: str,
+    space: str | None,
+    points: Path | None,
+    radii: str | None,
+    base_angles: str | None,
+    platform_angles: str | None,
+    height: float | None,
+    force: bool,
+    quiet: bool,
+    debug: bool,
 ) -> None:
     """Write a first specification of your own manipulator.
 

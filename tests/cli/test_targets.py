@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from click.testing import CliRunner, Result
 
 import pne_sym
 from pne_sym import generation

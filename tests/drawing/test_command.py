@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 
 import pytest
-from typer.main import get_command
 
 from pne_sym import manipulators
 from pne_sym.cli.app import app
@@ -136,7 +135,7 @@ def test_options_with_values_are_known_as_such() -> None:
     """Else their values, before the command, would be taken for it."""
     taking = {
         name
-        for command in get_command(app).commands.values()
+        for command in app.commands.values()
         for option in command.params
         if option.param_type_name == "option" and not option.is_flag
         for name in option.opts
