@@ -9,16 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.joint_parameters import END, Place, joint_parameter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
-from pne_sym.mechanics.live import value_at
+from pne_sym.mechanics.live import END, Place, of_legs, value_at
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.effects import Friction
 from pne_sym.model.manipulator import Joint
@@ -166,12 +164,11 @@ def _text(joints: Sequence[Joint], end: Friction | None, *, coupled: bool) -> st
 class _Writer:
     def __init__(self, book: Book, g: LegGeometry, *, coupled: bool) -> None:
         self.g, self.coupled = g, coupled
-        self.given = partial(joint_parameter, book, g)
         self.eq = Writer(book, g, _TERMS)
 
     def joint(self, j: int, joint: Joint, rate: Any, q: Mapping[int, Any]) -> InJoint:
         """What acts in joint j."""
-        at, found = Place.of(self.g, j), InJoint()
+        at, found = Place.joint(self.g.leg_type, j), InJoint()
         if joint.friction:
             force = self.eq("friction_#", self._law(at, rate**2) * rate, j)
             found = replace(found, friction=force)
@@ -183,15 +180,20 @@ class _Writer:
             found = replace(found, rotor=sp.S.Zero if self.coupled else motor.felt, motor=motor)
         return found
 
+    def given(self, at: Place, name: str) -> Any:
+        """A live parameter of a joint."""
+        (symbol,) = of_legs(self.eq.book, self.g.leg_type, at, name)
+        return symbol
+
     def _law(self, at: Place, square: Any, prefix: str = "") -> Any:
         """Friction over rate, by the square of the rate."""
         of = value_at(self.g.leg_type.model, f"{at.path}.friction")
         factor: Any = sp.S.Zero
         if of.viscous is not None:
-            factor = self.given(at, "friction", "viscous")
+            factor = self.given(at, "viscous")
         if of.coulomb is not None:
-            coulomb = self.given(at, "friction", "coulomb")
-            scale = self.given(at, "friction", "velocity_scale")
+            coulomb = self.given(at, "coulomb")
+            scale = self.given(at, "velocity_scale")
             least = self.eq("vs2_%", scale**2, at.mark, f"{prefix}{at.mark}", at.word)
             factor = factor + coulomb / sp.sqrt(square + least)
         return factor
@@ -204,15 +206,15 @@ class _Writer:
 
     def _spring(self, at: Place, j: int, displacement: Any) -> tuple[Any, Any]:
         """Force of the spring against the displacement of joint j, and its energy."""
-        stiffness = self.given(at, "spring", "stiffness")
-        rest = self.given(at, "spring", "rest")
+        stiffness = self.given(at, "stiffness")
+        rest = self.given(at, "rest")
         force = self.eq("spring_#", stiffness * (displacement - rest), j)
         return force, self.eq("stored_#", force * (displacement - rest) / 2, j)
 
     def _motor(self, at: Place, j: int, rate: Any) -> Motor:
         """The motor of joint j; its rate where it turns with that joint alone."""
-        inertia = self.given(at, "actuator", "rotor_inertia")
-        ratio = self.given(at, "actuator", "gear_ratio")
+        inertia = self.given(at, "rotor_inertia")
+        ratio = self.given(at, "gear_ratio")
         felt = self.eq("rotor_#", ratio**2 * inertia, j)
         turning = None if self.coupled else self.eq("motor_#", ratio * rate, j)
         return Motor(felt, ratio, self.eq("per_turn_#", 1 / ratio, j), turning)

@@ -11,9 +11,9 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Output, Rule
+from pne_sym.derivation import Book, Output
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.live import note, of_legs
+from pne_sym.mechanics.live import Place, note, of_legs
 from pne_sym.mechanics.terms import Writer, glossary
 
 _TERMS = glossary(r"""
@@ -64,9 +64,7 @@ def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequ
 
 def _limits(book: Book, g: LegGeometry, j: int) -> tuple[Any, ...]:
     """The live parameters of joint j: its least and its largest displacement."""
-    meaning = f"least and largest displacement of joint {j}"
-    name, path = f"{g.leg_type.part('joint', j)}_limits", f"joints[{j - 1}].limits.displacement"
-    symbols = of_legs(book, g.leg_type, name, path, g.kind(j).unit, meaning)
+    symbols = of_legs(book, g.leg_type, Place.joint(g.leg_type, j), "limits")
     for symbol, mark, word in zip(symbols, "-+", ("least", "largest"), strict=True):
         note(book, symbol, f"q^{mark}_{{{j}}}", f"{word} displacement of joint {j}")
     return symbols
@@ -83,10 +81,6 @@ def write_efforts(book: Book, g: LegGeometry, actuators: Sequence[tuple[int, int
     for j, joint in enumerate(g.leg_type.model.joints, 1):
         if not joint.has_effort:
             continue
-        meaning = f"largest size of the force of actuator {j}"
-        name, path = f"{g.leg_type.part('joint', j)}_effort", f"joints[{j - 1}].limits.effort"
-        unit, rule = g.kind(j).effort_unit, Rule.POSITIVE
-        (limit,) = of_legs(book, g.leg_type, name, path, unit, meaning, rule=rule)
-        note(book, limit, rf"\bar\tau_{{{j}}}", meaning)
+        (limit,) = of_legs(book, g.leg_type, Place.joint(g.leg_type, j), "effort")
         rows = tuple(actuators.index((i, j - 1)) for i in g.leg_type.indices)
         book.outputs.append(Output("effort_limits", limit, ((0, 0),), (), g.leg_type.name, rows))

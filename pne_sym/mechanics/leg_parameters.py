@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -13,9 +14,9 @@ from pne_sym.derivation import Book, Frame, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.directions import unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.live import Demands, note, of_legs
+from pne_sym.mechanics.live import END, LEG, Demands, Place, note, of_legs
 from pne_sym.mechanics.structure import LegType, is_coordinate
-from pne_sym.mechanics.terms import Writer, filled, glossary
+from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import chain_pose
 from pne_sym.model.manipulator import Vector3
 from pne_sym.vector import ZeroVector
@@ -30,26 +31,7 @@ q             | \mathbf p       | given @platform
 d_#           | \mathbf d_{#}   | given
     offset of &, fixed in link %
 """)
-_FIELDS = {
-    "base_point": ("base_point", "m", "base point, base frame"),
-    "base_frame": ("base_frame", "-", "rotation from leg axes to base axes"),
-    "platform_point": ("platform_point", "m", "platform joint, platform frame"),
-    "joint#_axis": ("joints[%].axis", "-", "axis of joint #, preceding link's frame"),
-    "joint#_pitch": ("joints[%].pitch", "m/rad", "pitch of joint #"),
-    "joint#_offset": ("joints[%].offset", "m", "offset of joint #, preceding link's frame"),
-    "platform_joint_#": ("platform_joint.#", "-", "# of the platform joint"),
-    "platform_joint_offset": (
-        "platform_joint.offset",
-        "m",
-        "offset of platform joint, preceding link's frame",
-    ),
-    "platform_joint_rotation": (
-        "platform_joint.rotation",
-        "-",
-        "platform axes in the last link's frame",
-    ),
-}
-"""Live parameters of a leg: path in the leg, unit, meaning."""
+_OFFSET_END = replace(END, word="platform joint")
 
 
 class LegParameters:
@@ -68,18 +50,9 @@ class LegParameters:
         self.platform_point: Any = None
         self.eq = Writer(book, geometry, _TERMS)
 
-    def field(self, stem: str, *numbers: Any, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
+    def field(self, name: str, at: Place = LEG, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
         """A live parameter over the legs of the type."""
-        path, unit, meaning = _FIELDS[stem]
-        path, meaning = (filled(text, numbers) for text in (path, meaning))
-        name = filled(self._labelled(stem, numbers), numbers)
-        return of_legs(self.book, self.type, name, path, unit, meaning, **demands)
-
-    def _labelled(self, stem: str, numbers: tuple[Any, ...]) -> str:
-        """A stem with the label of its joint."""
-        if "joint#" not in stem:
-            return stem
-        return stem.replace("joint#", self.type.part("joint", numbers[0]))
+        return of_legs(self.book, self.type, at, name, **demands)
 
     def points(self) -> None:
         """Base point, platform point, leg axes."""
@@ -103,10 +76,9 @@ class LegParameters:
                 self.spec[j] = unit(joint.axis)
             else:
                 zeros = (2,) if self.planar else ()
-                rule = Rule.UNIT
-                self.spec[j] = self.field("joint#_axis", j, j - 1, zeros=zeros, rule=rule)
+                self.spec[j] = self.field("axis", Place.joint(self.type, j), zeros=zeros)
             if joint.kind.pitched:
-                (pitch,) = self.field("joint#_pitch", j, j - 1)
+                (pitch,) = self.field("pitch", Place.joint(self.type, j))
                 what = f"pitch of joint {j}: advance per angle"
                 g.pitch[j] = note(self.book, pitch, rf"\kappa_{{{j}}}", what)
             group = j if g.turns(j) else group
@@ -128,11 +100,9 @@ class LegParameters:
             if len(zeros) == 3:
                 self.g.offset[j] = ZeroVector
                 continue
-            last = j == self.g.count + 1
-            stem = "platform_joint_offset" if last else "joint#_offset"
-            components = self.field(stem, j, j - 1, zeros=zeros)
-            frame, what = self.g.frame("spec", self.g.group[j - 1]), f"joint {j}"
-            what = "platform joint" if last else what
+            at = _OFFSET_END if j > self.g.count else Place.joint(self.type, j)
+            components = self.field("offset", at, zeros=zeros)
+            frame, what = self.g.frame("spec", self.g.group[j - 1]), at.word
             self.g.offset[j] = self.eq.give("d_#", components, j, j - 1, what, frame=frame)
 
 

@@ -7,13 +7,12 @@ acceleration the platform gives.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Unpack
-
-import sympy as sp
+from functools import partial
+from typing import Any
 
 from pne_sym.derivation import Book, Rule
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.live import Demands, note, of_legs
+from pne_sym.mechanics.live import Place, of_legs
 from pne_sym.mechanics.platform_motion import symmetric_entries
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Dot, Identity, Outer, Vector, ZeroVector
@@ -30,12 +29,6 @@ h_#       | \mathbf h_{#}        | LUMPING constant @own
 J_#       | \mathbf J_{#}        | LUMPING constant symmetric @own
     inertia tensor of link # about %
 """)
-_FIELDS = {
-    "mass": ("kg", "mass of link {j}"),
-    "centre_of_mass": ("m", "centre of mass of link {j}, link frame"),
-    "inertia": ("kg m^2", "inertia tensor of link {j} about its centre of mass, link axes"),
-}
-"""Field of a link -> unit, meaning."""
 
 
 @dataclass(frozen=True)
@@ -94,15 +87,9 @@ class _Writer:
 
     def _parameters(self, j: int) -> tuple[Any, Any, Any]:
         """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
-        (mass,) = self._field(j, "mass", rule=Rule.MASS)
-        note(self.book, mass, f"m_{{{j}}}", f"mass of link {j}")
-        centre = self._field(j, "centre_of_mass", zeros=(2,) if self.planar else ())
+        given = partial(of_legs, self.book, self.g.leg_type, Place.link(self.g.leg_type, j))
+        (mass,) = given("mass")
+        centre = given("centre_of_mass", zeros=(2,) if self.planar else ())
         rule = Rule.PLANAR_INERTIA if self.planar else Rule.INERTIA
-        entries = symmetric_entries(self._field(j, "inertia", rule=rule), self.planar)
+        entries = symmetric_entries(given("inertia", rule=rule), self.planar)
         return mass, self.eq.give("rho_#", centre, j), self.eq.give("I_#", entries, j)
-
-    def _field(self, j: int, name: str, **demands: Unpack[Demands]) -> tuple[sp.Expr, ...]:
-        """A live parameter of link j: symbols of its entries."""
-        legs, (unit, meaning) = self.g.leg_type, _FIELDS[name]
-        stem, path = f"{legs.part('link', j)}_{name}", f"joints[{j - 1}].link.{name}"
-        return of_legs(self.book, legs, stem, path, unit, meaning.format(j=j), **demands)

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.derivation import Book, Rule
+from pne_sym.derivation import Book
 from pne_sym.mechanics.directions import AXES, pattern_of, unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_parameters import LegParameters
+from pne_sym.mechanics.live import END
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import Array
@@ -72,11 +73,9 @@ class PlatformDirections:
     def _stated(self, name: str) -> Any:
         """Components of what the specification states of the platform joint: live or fixed."""
         value = getattr(self.type.model.platform_joint, name)
-        if name == "rotation":
-            return self.given.field("platform_joint_rotation", rule=Rule.ROTATION)
-        if is_coordinate(value):
+        if name != "rotation" and is_coordinate(value):
             return unit(value)
-        return self.given.field("platform_joint_#", name, rule=Rule.UNIT)
+        return self.given.field(name, END)
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
         u = self.eq.give("end_l#", link, k + 1)

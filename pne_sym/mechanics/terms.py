@@ -70,8 +70,8 @@ def is_named(value: Any) -> bool:
     return named or value in (0, ZeroVector, ZeroTensor)
 
 
-def glossary(table: str) -> dict[str, Term]:
-    """The rows of a table by name."""
+def rows_of(table: str) -> dict[str, tuple[list[str], str]]:
+    """The rows of a table by name: other cells, and what stands below."""
     found: dict[str, tuple[list[str], list[str]]] = {}
     below: list[str] = []
     for line in table.strip("\n").splitlines():
@@ -81,7 +81,12 @@ def glossary(table: str) -> dict[str, Term]:
             below = []
             name, *cells = (cell.strip() for cell in line.split("|"))
             found[name] = cells, below
-    return {name: _term(cells, " ".join(below)) for name, (cells, below) in found.items()}
+    return {name: (cells, " ".join(below)) for name, (cells, below) in found.items()}
+
+
+def glossary(table: str) -> dict[str, Term]:
+    """The terms of a table by name."""
+    return {name: _term(*row) for name, row in rows_of(table).items()}
 
 
 def _term(cells: list[str], meaning: str) -> Term:

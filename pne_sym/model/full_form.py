@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
 
 from pne_sym.model.joint_kinds import JointKind
-from pne_sym.model.manipulator import (
-    Body,
-    Joint,
-    Leg,
-    Manipulator,
-    Matrix3,
-    PlatformJoint,
-)
-from pne_sym.model.read_effects import FIELDS as EFFECTS
+from pne_sym.model.kind import Kind
+from pne_sym.model.manipulator import Body, Leg, Manipulator
 
 Plain = dict[str, object]
 _PITCHED = {kind.letter for kind in JointKind if kind.pitched}
@@ -34,71 +30,34 @@ def to_full_form(manipulator: Manipulator) -> Plain:
         form["moving_base"] = True
     if m.coupling is not None:
         form["coupling"] = [list(row) for row in m.coupling]
-    form["platform"] = _body(m.platform)
-    if m.payload is not None:
-        form["platform"] = _body(m.platform) | {"payload": _body(m.payload)}
-    form["legs"] = [_leg(leg) for leg in m.legs]
+    payload = {} if m.payload is None else {"payload": _table(m.payload, Body)}
+    form["platform"] = _table(m.platform, Body) | payload
+    form["legs"] = [_table(leg, Leg) for leg in m.legs]
     form["home"] = {"X": list(m.home.X)} | ({"q": list(m.home.q)} if m.home.q else {})
     if m.symbols:
         form["symbols"] = dict(m.symbols)
     return form
 
 
-def _leg(leg: Leg) -> Plain:
-    names = {"type": leg.type, "name": leg.name}
-    return {key: name for key, name in names.items() if name} | {
-        "base_point": list(leg.base_point),
-        "base_frame": _rows(leg.base_frame),
-        "joints": [_joint(joint) for joint in leg.joints],
-        "platform_joint": _platform_joint(leg.platform_joint),
-        "platform_point": list(leg.platform_point),
-    }
-
-
-def _joint(joint: Joint) -> Plain:
-    named: Plain = {"name": joint.name} if joint.name else {}
-    form: Plain = named | {
-        "kind": str(joint.kind),
-        "axis": list(joint.axis),
-        "offset": list(joint.offset),
-    }
-    if str(joint.kind) in _PITCHED:
-        form["pitch"] = joint.pitch
-    form |= {
-        "actuated": joint.actuated,
-        "extra": joint.extra,
-        "link": _body(joint.link),
-    }
-    effects = {name: getattr(joint, name) for name in EFFECTS}
-    return form | {name: _present(each) for name, each in effects.items() if each is not None}
-
-
-def _present(effect: object) -> Plain:
-    """The fields that are there."""
-    fields = {name: value for name, value in vars(effect).items() if value is not None}
-    return {n: list(v) if isinstance(v, tuple) else v for n, v in fields.items()}
-
-
-def _platform_joint(joint: PlatformJoint) -> Plain:
-    form: Plain = {"kind": str(joint.kind), "offset": list(joint.offset)}
-    if joint.axis_link is not None:
-        form["axis_link"] = list(joint.axis_link)
-    if joint.axis_platform is not None:
-        form["axis_platform"] = list(joint.axis_platform)
-    if joint.rotation is not None:
-        form["rotation"] = _rows(joint.rotation)
-    if joint.friction is not None:
-        form["friction"] = _present(joint.friction)
+def _table(part: Any, of: type | None = None) -> Plain:
+    """The fields of a part that are there; what it is called first, a pitch where there is one."""
+    form: Plain = {}
+    for field in sorted(fields(of or part), key=lambda field: field.name not in ("type", "name")):
+        name, value = field.name, getattr(part, field.name)
+        absent = value is field.default is None or (field.default == "" and value == "")
+        if not absent and (name != "pitch" or str(part.kind) in _PITCHED):
+            form[name] = _plain(value)
     return form
 
 
-def _body(body: Body) -> Plain:
-    return {
-        "mass": body.mass,
-        "centre_of_mass": list(body.centre_of_mass),
-        "inertia": _rows(body.inertia),
-    }
+def _plain(value: Any) -> object:
+    """Tables, lists, texts, numbers.
 
-
-def _rows(matrix: Matrix3 | Sequence[Sequence[float]]) -> list[list[float]]:
-    return [list(row) for row in matrix]
+    Raises:
+        TypeError: it is none of these.
+    """
+    if isinstance(value, int | float | np.generic):
+        return value
+    if isinstance(value, str | Kind):
+        return str(value)
+    return _table(value) if is_dataclass(value) else [_plain(each) for each in value]
