@@ -84,6 +84,12 @@ def defined(folder: str, pattern: str) -> frozenset[str]:
     return frozenset(name for names in found for name in names)
 
 
+def words(text: str) -> set[str]:
+    """Names in MATLAB code that stand neither beside a dot nor in comments or texts."""
+    code = re.sub(r"%.*", "", re.sub(r"(?<=[(\[,= ])'[^'\n]*'", "", text))
+    return set(re.findall(r"(?<![\w.])[A-Za-z]\w*\b(?!\.)", code))
+
+
 def reached(
     users: Iterable[Any], parts: Mapping[str, Any], named: Callable[[Any], Iterable[str]]
 ) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,6 @@ import pytest
 
 from pne_sym.backends.octave import OctaveBackend
 from pne_sym.backends.target import TargetError
-from pne_sym.model.reader import from_text
 from pne_sym.program.evaluate import Status
 from pne_sym.program.interpret import Interpreter
 from tests import models
@@ -138,11 +138,27 @@ def test_the_language_is_matlab_s_too(name: str) -> None:
         assert heads == ([] if path.endswith("Contents.m") else [Path(path).stem])
 
 
-def test_a_name_that_matlab_refuses() -> None:
-    toml = Path("pne_sym/manipulators/planar_3rpr.toml").read_text(encoding="utf-8")
-    named = toml.replace('name = "planar_3rpr"', 'name = "otherwise"')
-    with pytest.raises(TargetError, match=r"otherwise: .*a word of MATLAB"):
-        OctaveBackend().emit(models.bundle(from_text(named, ".toml", "otherwise")))
+def called(name: str) -> dict[str, str]:
+    """The files of a model of that name."""
+    compiled = models.bundle(models.catalogue("planar_3rpr"))
+    named = replace(compiled.manipulator, name=name)
+    return OctaveBackend().emit(replace(compiled, manipulator=named))
+
+
+@pytest.mark.parametrize("name", ["otherwise", "size", "status", "p", "nargin"])
+def test_a_name_that_matlab_or_the_functions_have_for_something_else(name: str) -> None:
+    with pytest.raises(TargetError, match=f"{name}: the target octave: MATLAB or its code has"):
+        called(name)
+
+
+@in_octave
+def test_a_name_that_stands_behind_dots_and_in_messages_alone(tmp_path: Path) -> None:
+    for name in ("internal", "expected"):
+        for place, text in called(name).items():
+            file = tmp_path / place
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        run(f"[M, status] = {name}.M({name}.home_pose()); assert(status, 0);", tmp_path / "octave")
 
 
 # --- what only impossible states, or states side by side, tell ----------------------------

@@ -14,7 +14,7 @@ from pne_sym.backends.scalar import wrap
 from pne_sym.backends.steps import COMMON
 from pne_sym.backends.straight import places
 from pne_sym.backends.target import TargetError
-from pne_sym.backends.templating import defined, reached, render
+from pne_sym.backends.templating import defined, reached, render, words
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.public import Search
 
@@ -46,10 +46,8 @@ class OctaveBackend:
         """Path below the model's folder -> text.
 
         Raises:
-            TargetError: the model's name is a word of MATLAB.
+            TargetError: the model's name is a word of MATLAB, or of the functions.
         """
-        if bundle.name in _KEYWORDS:
-            raise TargetError(f"{bundle.name}: the target octave: the name is a word of MATLAB")
         facts = _facts(bundle)
         contents = render("octave/Contents.m.jinja", **facts)
         users = _files(bundle, render("octave/users.m.jinja", **facts))
@@ -57,6 +55,8 @@ class OctaveBackend:
         call = re.compile(rf"\b{bundle.name}\.internal\.(\w+)\(")
         needed = reached(users.values(), own, call.findall)
         files = {"Contents": contents} | users | {f"+internal/{n}": own[n] for n in needed}
+        if bundle.name in _KEYWORDS.union(*map(words, files.values())):
+            raise TargetError(f"{bundle.name}: the target octave: MATLAB or its code has this word")
         return {f"octave/+{bundle.name}/{place}.m": text for place, text in sorted(files.items())}
 
 
