@@ -10,10 +10,10 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation, ReciprocalBasis
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.frames import Triple
 from pne_sym.lowering.solve import Screws, solve, solve_transposed
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import Trials
+from pne_sym.lowering.triples import Triple
 from pne_sym.vector import nodes as n
 
 

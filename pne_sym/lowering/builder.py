@@ -76,6 +76,12 @@ class Builder(Statements):
         total = self._opened(algebra.total(*present))
         return self._remember(key, self.let(total, hint, named=named))
 
+    def dot(
+        self, u: Iterable[Atom], v: Iterable[Atom], hint: str = "", *, named: bool = False
+    ) -> Atom:
+        """Sum of the products of atoms."""
+        return self.add([self.mul(x, y) for x, y in zip(u, v, strict=True)], hint, named=named)
+
     def _opened(self, total: Any) -> Any:
         """The sum with named sums in it opened, where terms then cancel."""
         if not total.is_Add or len(total.args) > 6:

@@ -8,7 +8,7 @@ of an equation the cheapest is taken.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from functools import partial
 from typing import Any
 
@@ -25,14 +25,29 @@ from pne_sym.derivation import (
 from pne_sym.lowering import scalars, tensors, vectors
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.frames import Frames, Triple
+from pne_sym.lowering.frames import Frames
 from pne_sym.lowering.interface import Components
-from pne_sym.lowering.rotation import Rotation, Tensor9, symmetrised
+from pne_sym.lowering.rotation import Rotation
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
+from pne_sym.lowering.triples import Matrix, Triple, matrix, symmetrised
 from pne_sym.lowering.uses import uses
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
+
+_ZERO, _ONE = sp.S.Zero, sp.S.One
+_OPERATIONS = vectors.OPERATIONS | tensors.OPERATIONS
+_CONSTANTS: dict[Any, Any] = {
+    n.ZeroVector: (_ZERO,) * 3,
+    n.ZeroTensor: ((_ZERO,) * 3,) * 3,
+    n.Identity: matrix(lambda i, j: _ONE if i == j else _ZERO),
+}
+_INDICES: dict[int, list[tuple[int, ...]]] = {
+    1: [()],
+    3: [(i,) for i in range(3)],
+    9: [divmod(k, 3) for k in range(9)],
+}
+"""Number of components -> their indices."""
 
 
 class Lowering(Components):
@@ -58,38 +73,29 @@ class Lowering(Components):
         self._place = {name: k for k, name in enumerate(self.definition)}
         self.given = {g.symbol: g for g in derivation.givens}
         self.trials = Trials(builder)
-        self.home: dict[str, str] = {}
-        self._vectors: dict[tuple[str, str], Triple] = {}
-        self._tensors: dict[tuple[str, str], Tensor9] = {}
-        self._scalars: dict[str, Atom] = {}
+        self.home: dict[str, str] = {}  # the frame of each quantity that is made; "" of scalars
+        self._made: dict[tuple[str, str], Any] = {}  # components by name and frame
         self._totals: dict[Component, Atom] = {}  # sums over legs, by what they are
         self._in_progress: set[str] = set()
         frames = Frames(derivation, builder, self.vector, self.scalar, self.trials.store)
-        self.rotation = Rotation(builder, frames, self.trials, self._vectors, self.definition)
+        self.rotation = Rotation(builder, frames, self.trials, self._made, self.definition)
         self.bases = Bases(derivation, builder, self.trials, self.vector, self.scalar, self.ensure)
 
     # ---- what was made -----------------------------------------------------------------
 
     def components(self) -> Iterator[tuple[Component, Atom]]:
         """All components that were made, of quantities, sums over legs and axes of frames."""
-        for name, atom in self._scalars.items():
-            yield Component(name), atom
-        for (name, frame), v in self._vectors.items():
-            yield from ((Component(name, frame, (i,)), v[i]) for i in range(3))
-        for (name, frame), t in self._tensors.items():
-            places = ((i, j) for i in range(3) for j in range(3))
-            yield from ((Component(name, frame, (i, j)), t[i][j]) for i, j in places)
+        found = [(name, frame, atoms(value)) for (name, frame), value in self._made.items()]
+        for name, frame, value in sorted(found, key=lambda item: len(item[-1])):
+            for index, atom in zip(_INDICES[len(value)], value, strict=True):
+                yield Component(name, frame, index), atom
         yield from self._totals.items()
         yield from self.rotation.components()
 
     def made(self) -> dict[str, tuple[str, tuple[Atom, ...]]]:
         """Frame and components of every quantity, where it was made first."""
-        found = {name: ("", (atom,)) for name, atom in self._scalars.items()}
-        for name, frame in self.home.items():
-            value = self._vectors.get((name, frame)) or self._tensors.get((name, frame))
-            if value is not None:
-                found[name] = (frame, tuple(atoms(value)))
-        return found
+        made = {name: (frame, self._made.get((name, frame))) for name, frame in self.home.items()}
+        return {n: (f, tuple(atoms(value))) for n, (f, value) in made.items() if value is not None}
 
     def note_total(self, expr: Any, frame: str, value: Any) -> None:
         """Note what the sum of an equation over the legs of a type is, where it is the only one."""
@@ -99,8 +105,8 @@ class Lowering(Components):
         ]
         if same != [expr]:
             return
-        for k, atom in enumerate(atoms(value)):
-            index = {"": (), 3: (k,), 9: (k // 3, k % 3)}[frame and len(atoms(value))]
+        found = atoms(value)
+        for index, atom in zip(_INDICES[len(found)], found, strict=True):
             of = Component(name, frame, index, over=leg_type.name)
             self.trials.store(self._totals, of, atom)
 
@@ -151,7 +157,7 @@ class Lowering(Components):
 
     def ensure(self, name: str) -> None:
         """Lower a name's definition in its home frame, and what it needs before it."""
-        if name in self.home or name in self._scalars or name not in self.definition:
+        if name in self.home or name not in self.definition:
             return
         if name in self._in_progress:
             raise NotYetError(name)
@@ -186,7 +192,7 @@ class Lowering(Components):
         """What a condition tests: under a root the square of this, whatever form it took."""
         factors = sp.Mul.make_args(equation.rhs) if equation.forms else ()
         if sp.sqrt(value) in factors:
-            root = self._scalars[equation.name]
+            root = self._made[equation.name, ""]
             return self.b.mul(root, root)
         return self.scalar(value)
 
@@ -195,35 +201,28 @@ class Lowering(Components):
         return sorted(names, key=lambda name: (self._place.get(name, -1), name))
 
     def _keep(self, name: str) -> None:
-        if name in self._scalars:
-            self.b.keep([self._scalars[name]])
-        elif name in self.home:
-            key = (name, self.home[name])
-            self.b.keep(atoms(self._vectors.get(key, self._tensors.get(key, ()))))
+        if name in self.home:
+            self.b.keep(atoms(self._made.get((name, self.home[name]), ())))
 
     def _lower(self, equation: Equation) -> None:
         name, lhs = equation.name, equation.lhs
         forms = (equation.rhs, *equation.forms)
         if isinstance(lhs, sp.Symbol):
-            self._lower_scalar(name, forms)
+            value = self.trials.cheapest([partial(self.scalar, f, name) for f in forms])
+            self.trials.store(self.home, name, "")
+            self.trials.store(self._made, (name, ""), value)
             return
         frame = self._home_of(name, forms)
         self.trials.store(self.home, name, frame)
-        if isinstance(lhs, n.VectorSymbol):
-            if name in self.bases.duals:
-                value = vectors.single(self, *self.bases.duals[name], frame)
-            else:
-                value = self.trials.cheapest([partial(self.vector, f, frame, name) for f in forms])
-            self.trials.store(self._vectors, (name, frame), value)
+        if name in self.bases.duals:
+            value = vectors.single(self, *self.bases.duals[name], frame)
         else:
-            value = self.trials.cheapest([partial(self.tensor, f, frame, name) for f in forms])
-            if lhs.is_symmetric:
-                value = symmetrised(self.b, value)
-            self.trials.store(self._tensors, (name, frame), value)
+            value = self.trials.cheapest([partial(self._any, f, frame, name) for f in forms])
+        self.trials.store(self._made, (name, frame), self._symmetrised(lhs, value))
 
-    def _lower_scalar(self, name: str, forms: Sequence[Any]) -> None:
-        makers = [lambda f=f: self.scalar(f, name) for f in forms]
-        self.trials.store(self._scalars, name, self.trials.cheapest(makers))
+    def _symmetrised(self, symbol: Any, value: Any) -> Any:
+        symmetric = isinstance(symbol, n.TensorSymbol) and symbol.is_symmetric
+        return symmetrised(self.b, value) if symmetric else value
 
     def _home_of(self, name: str, forms: Sequence[Any]) -> str:
         body = self.d.notation[name].body
@@ -234,9 +233,6 @@ class Lowering(Components):
             return frames[0]
         costs = [self.trials.attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
-
-    def _any(self, expr: Any, frame: str) -> Any:
-        return self.vector(expr, frame) if isinstance(expr, n.Vector) else self.tensor(expr, frame)
 
     def frames_of(self, expr: Any) -> list[str]:
         """Home frames of the vectors and tensors in an expression, most frequent first."""
@@ -250,51 +246,70 @@ class Lowering(Components):
             found[frame] = found.get(frame, 0) + 1
         return sorted(found, key=lambda f: (-found[f], f)) or ["base"]
 
-    # ---- vectors -------------------------------------------------------------------------
+    # ---- vectors and tensors ---------------------------------------------------------------
 
     def vector(self, expr: Any, frame: str, hint: str = "") -> Triple:
         """Components of a vector expression in a frame."""
-        if isinstance(expr, n.VectorSymbol):
-            return self._vector_symbol(expr, frame)
-        if expr == n.ZeroVector:
-            return (sp.S.Zero,) * 3
-        operation = vectors.OPERATIONS.get(type(expr))
+        found: Triple = self._any(expr, frame, hint)
+        return found
+
+    def tensor(self, expr: Any, frame: str, hint: str = "") -> Matrix:
+        """Components of a tensor expression in a frame."""
+        found: Matrix = self._any(expr, frame, hint)
+        return found
+
+    def _any(self, expr: Any, frame: str, hint: str = "") -> Any:
+        if isinstance(expr, n.VectorSymbol | n.TensorSymbol):
+            return self._of_symbol(expr, frame)
+        if expr in _CONSTANTS:
+            return _CONSTANTS[expr]
+        operation = _OPERATIONS.get(type(expr))
         if operation is None:
             raise TypeError(f"no components for {type(expr).__name__}")
-        result: Triple = operation(self, expr, frame, hint)
-        return result
+        return operation(self, expr, frame, hint)
 
-    def _vector_symbol(self, symbol: Any, frame: str) -> Triple:
+    def _of_symbol(self, symbol: Any, frame: str) -> Any:
         key = (symbol.name, frame)
-        if key in self._vectors:
-            return self._vectors[key]
-        if symbol in self.given:
-            given = self.given[symbol]
-            if given.frame == frame:
-                return self.trials.store(self._vectors, key, given.components)
-            value = self.rotation.vector(given.components, given.frame, frame, symbol.name)
-            return self.trials.store(self._vectors, key, value)
-        self.ensure(symbol.name)
-        if key in self._vectors:
-            return self._vectors[key]
-        home = self.home[symbol.name]
-        makers = [
-            lambda: self.rotation.vector(self._vectors[symbol.name, home], home, frame, symbol.name)
-        ]
-        equation = self.definition[symbol.name]
-        if symbol.name not in self.bases.duals:
-            makers += [
-                partial(self.vector, f, frame, symbol.name)
-                for f in (equation.rhs, *equation.forms)
-                if self._is_there(f, frame)
-            ]
-            makers += self._in_parts(equation.rhs, home, frame, symbol.name)
-        before, self.b.equation = self.b.equation, equation.id
-        value = self.trials.cheapest(makers)
+        if key not in self._made and symbol not in self.given:
+            self.ensure(symbol.name)
+        if key in self._made:
+            return self._made[key]
+        makers: list[Callable[[], Any]] = [partial(self._turned, symbol, frame)]
+        before = self.b.equation
+        if symbol.name in self.definition:
+            equation = self.definition[symbol.name]
+            makers += self._anew(symbol, (equation.rhs, *equation.forms), frame)
+            self.b.equation = equation.id
+        found = self.trials.cheapest(makers)
         self.b.equation = before
-        return self.trials.store(self._vectors, key, value)
+        return self.trials.store(self._made, key, found)
 
-    def _in_parts(self, total: Any, home: str, frame: str, hint: str) -> Iterator[Any]:
+    def _turned(self, symbol: Any, frame: str) -> Any:
+        """What is given or was made in its home frame, in another."""
+        if symbol in self.given:
+            home, value = self.given[symbol].frame, self.given[symbol].components
+        else:
+            home = self.home[symbol.name]
+            value = self._made[symbol.name, home]
+        if isinstance(symbol, n.VectorSymbol):
+            return self.rotation.vector(value, home, frame, symbol.name)
+        rows = value if len(value) == 3 else matrix(lambda i, j: value[3 * i + j])
+        return self.rotation.tensor(rows, home, frame, symbol.is_symmetric, symbol.name)
+
+    def _anew(self, symbol: Any, forms: Sequence[Any], frame: str) -> Iterator[Callable[[], Any]]:
+        """Ways to form it from its equation in another frame than its home."""
+        if symbol.name not in self.bases.duals:
+            for form in forms:
+                if isinstance(symbol, n.TensorSymbol) or self._is_there(form, frame):
+                    yield partial(self._formed, symbol, form, frame)
+            yield from self._in_parts(forms[0], self.home[symbol.name], frame, symbol.name)
+
+    def _formed(self, symbol: Any, form: Any, frame: str) -> Any:
+        return self._symmetrised(symbol, self._any(form, frame, symbol.name))
+
+    def _in_parts(
+        self, total: Any, home: str, frame: str, hint: str
+    ) -> Iterator[Callable[[], Triple]]:
         """A way to a sum: what is there in a frame already is added there, the rest turned."""
         terms: tuple[list[Any], list[Any]] = ([], [])
         for term in total.args if isinstance(total, n.VectorAdd) else ():
@@ -313,63 +328,10 @@ class Lowering(Components):
     def _is_there(self, expr: Any, frame: str) -> bool:
         """Whether all vectors of an expression have components in a frame already."""
         return all(
-            (symbol.name, frame) in self._vectors
-            or (symbol.name, frame) in self._tensors
+            (symbol.name, frame) in self._made
             or (symbol in self.given and self.given[symbol].frame == frame)
             for symbol in _symbols(expr)
         )
-
-    # ---- tensors -------------------------------------------------------------------------
-
-    def tensor(self, expr: Any, frame: str, hint: str = "") -> Tensor9:
-        """Components of a tensor expression in a frame."""
-        if isinstance(expr, n.TensorSymbol):
-            return self._tensor_symbol(expr, frame)
-        if expr in (n.ZeroTensor, n.Identity):
-            one = sp.S.One if expr == n.Identity else sp.S.Zero
-            return tuple(
-                tuple(one if i == j else sp.S.Zero for j in range(3))  # type: ignore[return-value]
-                for i in range(3)
-            )
-        operation = tensors.OPERATIONS.get(type(expr))
-        if operation is None:
-            raise TypeError(f"no components for {type(expr).__name__}")
-        result: Tensor9 = operation(self, expr, frame, hint)
-        return result
-
-    def _tensor_symbol(self, symbol: Any, frame: str) -> Tensor9:
-        key = (symbol.name, frame)
-        if key in self._tensors:
-            return self._tensors[key]
-        if symbol in self.given:
-            given = self.given[symbol]
-            c = given.components
-            value: Tensor9 = (tuple(c[:3]), tuple(c[3:6]), tuple(c[6:]))
-            origin = given.frame
-        else:
-            self.ensure(symbol.name)
-            if key in self._tensors:
-                return self._tensors[key]
-            origin = self.home[symbol.name]
-            value = self._tensors[symbol.name, origin]
-        before = self.b.equation
-        makers = [
-            lambda: self.rotation.tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
-        ]
-        if symbol.name in self.definition:
-            equation = self.definition[symbol.name]
-            self.b.equation = equation.id
-            makers += [
-                partial(self._anew, symbol, f, frame) for f in (equation.rhs, *equation.forms)
-            ]
-        found = self.trials.cheapest(makers)
-        self.b.equation = before
-        return self.trials.store(self._tensors, key, found)
-
-    def _anew(self, symbol: Any, form: Any, frame: str) -> Tensor9:
-        """A tensor formed from its equation in another frame than its home."""
-        value = self.tensor(form, frame, symbol.name)
-        return symmetrised(self.b, value) if symbol.is_symmetric else value
 
     # ---- scalars -------------------------------------------------------------------------
 
@@ -382,7 +344,7 @@ class Lowering(Components):
     def _scalar_symbol(self, symbol: sp.Symbol) -> Atom:
         if symbol.name in self.definition:
             self.ensure(symbol.name)
-            return self._scalars[symbol.name]
+            return self._made[symbol.name, ""]
         return symbol
 
 

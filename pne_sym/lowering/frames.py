@@ -17,9 +17,7 @@ from pne_sym.derivation import Derivation, Frame
 from pne_sym.lowering.algebra import negative
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.statements import Atom
-
-Triple = tuple[Atom, Atom, Atom]
-Matrix = tuple[Triple, Triple, Triple]
+from pne_sym.lowering.triples import XYZ, Matrix, Triple, matrix, transposed, triple
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ class Frames:
     def _to_child(self, frame: Frame) -> ConstantStep | TurnStep:
         if frame.angle is not None:
             return TurnStep(*frame.angle, 1)
-        return ConstantStep(_transpose(self.matrix(frame)))
+        return ConstantStep(transposed(self.matrix(frame)))
 
     def _to_parent(self, frame: Frame) -> ConstantStep | TurnStep:
         if frame.angle is not None:
@@ -101,19 +99,18 @@ class Frames:
             entries = list(frame.rotation)
             if None in entries:
                 entries = self._fill(frame, entries)
-            rows = [tuple(sp.sympify(e) for e in entries[3 * i : 3 * i + 3]) for i in range(3)]
-            self._store(self._matrix, frame.name, (rows[0], rows[1], rows[2]))
+            made = matrix(lambda i, j: sp.sympify(entries[3 * i + j]))
+            self._store(self._matrix, frame.name, made)
         return self._matrix[frame.name]
 
     def _fill(self, frame: Frame, entries: list[Any]) -> list[Any]:
         assert frame.parent is not None
         if frame.axes is not None:
             columns = [self._components(axis, frame.parent) for axis in frame.axes]
-            found = [columns[k % 3][k // 3] for k in range(9)]
+            found = [c for row in zip(*columns, strict=True) for c in row]
         else:
             assert frame.rows is not None
-            rows = [self._components(row, frame.name) for row in frame.rows]
-            found = [rows[k // 3][k % 3] for k in range(9)]
+            found = [c for row in frame.rows for c in self._components(row, frame.name)]
         return [f if e is None else e for e, f in zip(entries, found, strict=True)]
 
     def _merge(self, path: list[ConstantStep | TurnStep]) -> list[ConstantStep | TurnStep]:
@@ -128,11 +125,8 @@ class Frames:
         return [s for s in merged if not (isinstance(s, ConstantStep) and _is_identity(s.matrix))]
 
     def _product(self, a: Matrix, b: Matrix) -> Matrix:
-        rows = [
-            tuple(self.b.add([self.b.mul(a[i][k], b[k][j]) for k in range(3)]) for j in range(3))
-            for i in range(3)
-        ]
-        return (rows[0], rows[1], rows[2])
+        columns = transposed(b)
+        return matrix(lambda i, j: self.b.dot(a[i], columns[j]))
 
     def apply(self, step: ConstantStep | TurnStep, v: Triple, hint: str = "") -> Triple:
         """Components after a step."""
@@ -147,15 +141,7 @@ class Frames:
                 b.add((b.mul(c, y), negative(b.mul(s, x))), f"{hint}_y"),
                 z,
             )
-        return tuple(
-            b.add([b.mul(step.matrix[i][k], v[k]) for k in range(3)], f"{hint}_{'xyz'[i]}")
-            for i in range(3)
-        )
-
-
-def _transpose(m: Matrix) -> Matrix:
-    rows = [tuple(m[j][i] for j in range(3)) for i in range(3)]
-    return (rows[0], rows[1], rows[2])
+        return triple(lambda i: b.dot(step.matrix[i], v, f"{hint}_{XYZ[i]}"))
 
 
 def _is_identity(m: Matrix) -> bool:

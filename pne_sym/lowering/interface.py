@@ -8,10 +8,10 @@ from typing import Any
 from pne_sym.derivation import Given
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.frames import Triple
-from pne_sym.lowering.rotation import Rotation, Tensor9
+from pne_sym.lowering.rotation import Rotation
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import Trials
+from pne_sym.lowering.triples import Matrix, Triple
 
 
 class Components(ABC):
@@ -36,7 +36,7 @@ class Components(ABC):
         """Components of a vector expression in a frame."""
 
     @abstractmethod
-    def tensor(self, expr: Any, frame: str, hint: str = "") -> Tensor9:
+    def tensor(self, expr: Any, frame: str, hint: str = "") -> Matrix:
         """Components of a tensor expression in a frame."""
 
     @abstractmethod

@@ -7,27 +7,38 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Equation
-from pne_sym.lowering.algebra import negative
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.frames import ConstantStep, Frames, Triple
+from pne_sym.lowering.frames import ConstantStep, Frames
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import Trials
+from pne_sym.lowering.triples import (
+    XYZ,
+    Matrix,
+    Triple,
+    cross,
+    entry,
+    matrix,
+    on_both_sides,
+    symmetrised,
+    transposed,
+    triple,
+)
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
-Tensor9 = tuple[Triple, Triple, Triple]
-XYZ = "xyz"
+_NONE = (sp.S.Zero,) * 3
 
 
 class Rotation:
     """Turns components of vectors and tensors into those in another frame.
 
     Attributes:
-        vectors: components by (name, frame), as far as they are known.
+        made: components by (name, frame), as far as they are known.
         definition: equation of each named quantity.
     """
 
@@ -36,11 +47,11 @@ class Rotation:
         builder: Builder,
         frames: Frames,
         trials: Trials,
-        vectors: Mapping[tuple[str, str], Triple],
+        made: Mapping[tuple[str, str], Any],
         definition: Mapping[str, Equation],
     ) -> None:
         self.b, self.frames, self.trials = builder, frames, trials
-        self.vectors, self.definition = vectors, definition
+        self.made, self.definition = made, definition
         self._axis_columns: dict[tuple[str, str, int], Triple] = {}
 
     def vector(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
@@ -58,11 +69,8 @@ class Rotation:
         return all((frame, "base", k) in self._axis_columns for k in range(3))
 
     def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
-        axes = [self.axis_column(frame, "base", k) for k in range(3)]
-        return tuple(
-            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_tip_{XYZ[k]}")
-            for k, axis in enumerate(axes)
-        )
+        axes = triple(lambda k: self.axis_column(frame, "base", k))
+        return triple(lambda k: self.b.dot(axes[k], v, f"{hint}_tip_{XYZ[k]}"))
 
     def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
         steps = self.frames.steps(origin, target)
@@ -74,18 +82,9 @@ class Rotation:
         return v
 
     def _by_columns(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
-        columns = [self.axis_column(origin, target, k) if v[k] != 0 else None for k in range(3)]
-        return tuple(
-            self.b.add(
-                [
-                    self.b.mul(v[k], column[i])
-                    for k, column in enumerate(columns)
-                    if column is not None
-                ],
-                f"{hint}_in_base_{XYZ[i]}",
-            )
-            for i in range(3)
-        )
+        columns = triple(lambda k: self.axis_column(origin, target, k) if v[k] != 0 else _NONE)
+        rows = transposed(columns)
+        return triple(lambda i: self.b.dot(v, rows[i], f"{hint}_in_base_{XYZ[i]}"))
 
     def components(self) -> Iterator[tuple[Component, Atom]]:
         """The entries of axes that were made."""
@@ -98,12 +97,9 @@ class Rotation:
         key = (origin, target, k)
         if key in self._axis_columns:
             return self._axis_columns[key]
-        unit = [sp.S.Zero] * 3
-        unit[k] = sp.S.One
+        unit = triple(lambda i: sp.Integer(int(i == k)))
         hint = f"axis_{XYZ[k]}_{origin.replace('.', '_')}"
-        makers: list[Callable[[], Triple]] = [
-            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)
-        ]
+        makers: list[Callable[[], Triple]] = [lambda: self._by_steps(unit, origin, target, hint)]
         along = self.along(origin, target, k)
         if along is not None:
             makers.append(along)
@@ -115,35 +111,26 @@ class Rotation:
 
     def along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
         """A way by a vector whose only component in the origin frame is its k-th."""
-        for (name, frame), v in self.vectors.items():
-            if (
-                frame != origin
-                or v[k] == 0
-                or v[k].is_Number
-                or any(v[i] != 0 for i in range(3) if i != k)
-            ):
-                continue
-            same = self._same_vector(name, target)
-            if same is not None:
-                length = v[k]
-                return lambda: tuple(
-                    self.b.divide(c, length, f"axis_{XYZ[k]}_{XYZ[i]}") for i, c in enumerate(same)
-                )
+        for (name, frame), v in self.made.items():
+            if frame == origin and not isinstance(v[k], tuple) and not v[k].is_Number:
+                same = self._same_vector(name, target) if v.count(0) == 2 else None
+                if same is not None:
+                    return partial(self._over, same, v[k], f"axis_{XYZ[k]}")
         return None
+
+    def _over(self, v: Triple, length: Atom, hint: str) -> Triple:
+        return triple(lambda i: self.b.divide(v[i], length, entry(hint, i)))
 
     def _same_vector(self, name: str, target: str) -> Triple | None:
         """Components in the target of a vector or of an equal one."""
-        if (name, target) in self.vectors:
-            return self.vectors[name, target]
-        if name in self.definition:
-            for form in self.definition[name].forms:
-                if isinstance(form, n.VectorSymbol) and (form.name, target) in self.vectors:
-                    return self.vectors[form.name, target]
-        return None
+        forms = self.definition[name].forms if name in self.definition else ()
+        equal = [form.name for form in forms if isinstance(form, n.VectorSymbol)]
+        there = ((same, target) for same in (name, *equal) if (same, target) in self.made)
+        return next((self.made[key] for key in there), None)
 
     def tensor(
-        self, t: Tensor9, origin: str, target: str, symmetric: bool, hint: str = ""
-    ) -> Tensor9:
+        self, t: Matrix, origin: str, target: str, symmetric: bool, hint: str = ""
+    ) -> Matrix:
         """Components of a tensor in another frame."""
         if origin == target:
             return t
@@ -156,31 +143,20 @@ class Rotation:
             ]
         return self.trials.cheapest(makers)
 
-    def _tensor_by_steps(self, t: Tensor9, origin: str, target: str, symmetric: bool) -> Tensor9:
+    def _tensor_by_steps(self, t: Matrix, origin: str, target: str, symmetric: bool) -> Matrix:
         for step in self.frames.steps(origin, target):
-            columns = [self.frames.apply(step, (t[0][j], t[1][j], t[2][j])) for j in range(3)]
-            rows = [
-                self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
-                for i in range(3)
-            ]
-            t = (rows[0], rows[1], rows[2])
+            t = on_both_sides(partial(self.frames.apply, step), t)
             if symmetric and isinstance(step, ConstantStep):
                 t = symmetrised(self.b, t)
         return symmetrised(self.b, t) if symmetric else t
 
-    def _tensor_by_axes(self, t: Tensor9, origin: str, hint: str) -> Tensor9:
+    def _tensor_by_axes(self, t: Matrix, origin: str, hint: str) -> Matrix:
         """A T A^T with the axes A of the frame of origin in base axes: columns, then rows."""
-        columns = [
-            self._by_columns((t[0][j], t[1][j], t[2][j]), origin, "base", hint) for j in range(3)
-        ]
-        return tuple(
-            self._by_columns((columns[0][i], columns[1][i], columns[2][i]), origin, "base", hint)
-            for i in range(3)
-        )  # type: ignore[return-value]
+        return on_both_sides(lambda v: self._by_columns(v, origin, "base", hint), t)
 
     def _tensor_by_columns(
-        self, t: Tensor9, origin: str, target: str, left: int, hint: str
-    ) -> Tensor9:
+        self, t: Matrix, origin: str, target: str, left: int, hint: str
+    ) -> Matrix:
         """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated.
 
         Where no entry on the diagonal stays, the last follows from the trace, which does.
@@ -205,28 +181,4 @@ class Rotation:
                 rows[p][q] = rows[q][p] = b.add(
                     (b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p]))
                 )
-        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
-
-
-def symmetrised(b: Builder, t: Tensor9) -> Tensor9:
-    """Of each pair of equal entries the cheaper one."""
-    rows = [list(row) for row in t]
-    for i, j in ((0, 1), (0, 2), (1, 2)):
-        upper, lower = t[i][j], t[j][i]
-        best = lower if b.cost([lower]) < b.cost([upper]) else upper
-        rows[i][j] = rows[j][i] = best
-    return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
-
-
-def cross(b: Builder, v: Triple, w: Triple, hint: str = "") -> Triple:
-    """Components of v x w."""
-    return tuple(
-        b.add(
-            (
-                b.mul(v[(i + 1) % 3], w[(i + 2) % 3]),
-                negative(b.mul(v[(i + 2) % 3], w[(i + 1) % 3])),
-            ),
-            f"{hint}_{XYZ[i]}" if hint else "",
-        )
-        for i in range(3)
-    )
+        return matrix(lambda p, q: rows[p][q])

@@ -123,7 +123,7 @@ def _coordinates(of: Components, expr: Any) -> set[str]:
 
 def _dot_in(of: Components, a: Any, c: Any, frame: str, hint: str) -> Atom:
     u, v = of.vector(a, frame), of.vector(c, frame)
-    return of.b.add([of.b.mul(x, y) for x, y in zip(u, v, strict=True)], hint, named=True)
+    return of.b.dot(u, v, hint, named=True)
 
 
 def divisor_of(expr: Any) -> Any | None:

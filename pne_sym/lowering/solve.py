@@ -201,7 +201,7 @@ class _System:
         b = self.b
         right = [b.mul(self.screws.weights[i], self._rest(i, columns)) for i in rows]
         basis = self.screws.orthogonal(b, rows, columns)
-        parts = [_dot(b, q, right) for q in basis.units]
+        parts = [b.dot(q, right) for q in basis.units]
         for p in reversed(range(len(basis.order))):
             j = basis.order[p]
             known = [
@@ -220,7 +220,7 @@ class _System:
             known = [-b.mul(basis.upper[k, p], parts[k]) for k in range(p)]
             parts.append(b.mul(b.add([right[j], *known]), basis.inverse[p]))
         for place, i in enumerate(columns):
-            total = b.add([b.mul(q[place], z) for q, z in zip(basis.units, parts, strict=True)])
+            total = b.dot((q[place] for q in basis.units), parts)
             self.x[i] = b.mul(self.screws.weights[i], total)
 
 
@@ -253,14 +253,10 @@ class _Orthogonal:
             self.units.append(unit)
             for k in range(p + 1, len(self.order)):
                 other = self.order[k]
-                part = self.upper[p, k] = _dot(b, unit, left[other])
+                part = self.upper[p, k] = b.dot(unit, left[other])
                 left[other] = [
                     b.add((c, -b.mul(part, u))) for c, u in zip(left[other], unit, strict=True)
                 ]
-
-
-def _dot(b: Builder, u: Sequence[Atom], v: Sequence[Atom]) -> Atom:
-    return b.add([b.mul(x, y) for x, y in zip(u, v, strict=True)])
 
 
 def _length(b: Builder, v: Sequence[Atom]) -> Atom:
@@ -268,4 +264,4 @@ def _length(b: Builder, v: Sequence[Atom]) -> Atom:
     present = [c for c in v if c != 0]
     if len(present) == 1:
         return present[0]
-    return b.let(sp.sqrt(b.add([b.mul(c, c) for c in present])))
+    return b.let(sp.sqrt(b.dot(present, present)))

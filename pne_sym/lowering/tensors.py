@@ -2,83 +2,74 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.frames import Triple
 from pne_sym.lowering.interface import Components
-from pne_sym.lowering.rotation import XYZ, Tensor9
 from pne_sym.lowering.statements import Atom
+from pne_sym.lowering.triples import Matrix, Triple, entry, matrix, transposed
 from pne_sym.vector import nodes as n
 
 
-def _add(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
+def _add(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     parts = [of.tensor(term, frame) for term in expr.args]
-    return _entries(lambda i, j: of.b.add([p[i][j] for p in parts], _entry(hint, i, j)))
+    return matrix(lambda i, j: of.b.add([p[i][j] for p in parts], entry(hint, i, j)))
 
 
-def _entries(make: Callable[[int, int], Atom]) -> Tensor9:
-    return tuple(tuple(make(i, j) for j in range(3)) for i in range(3))  # type: ignore[return-value]
-
-
-def _scale(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
+def _scale(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     s, t = of.scalar(expr.args[0]), of.tensor(expr.args[1], frame)
-    return _entries(lambda i, j: of.b.mul(s, t[i][j], _entry(hint, i, j)))
+    return matrix(lambda i, j: of.b.mul(s, t[i][j], entry(hint, i, j)))
 
 
-def _skew(of: Components, expr: Any, frame: str, _hint: str) -> Tensor9:
+def _skew(of: Components, expr: Any, frame: str, _hint: str) -> Matrix:
     x, y, z = of.vector(expr.args[0], frame)
     zero = sp.S.Zero
     return ((zero, -z, y), (z, zero, -x), (-y, x, zero))
 
 
-def _outer(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
+def _outer(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     a, c = of.vector(expr.args[0], frame), of.vector(expr.args[1], frame)
-    return _entries(lambda i, j: of.b.mul(a[i], c[j], _entry(hint, i, j)))
+    return matrix(lambda i, j: of.b.mul(a[i], c[j], entry(hint, i, j)))
 
 
-def _compose(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
+def _compose(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     first, second = expr.args
     if isinstance(first, n.Skew) and first == second:
         return _skew_squared(of, of.vector(first.args[0], frame), hint)
-    a, c = of.tensor(first, frame), of.tensor(second, frame)
-    return _entries(
-        lambda i, j: of.b.add([of.b.mul(a[i][k], c[k][j]) for k in range(3)], _entry(hint, i, j)),
-    )
+    a, columns = of.tensor(first, frame), transposed(of.tensor(second, frame))
+    return matrix(lambda i, j: of.b.dot(a[i], columns[j], entry(hint, i, j)))
 
 
-def _skew_squared(of: Components, w: Triple, hint: str) -> Tensor9:
+def _skew_squared(of: Components, w: Triple, hint: str) -> Matrix:
     """w~ w~ = w w^T - (w . w) E: squares once."""
     b = of.b
     squares = [b.mul(c, c) for c in w]
 
-    def entry(i: int, j: int) -> Atom:
+    def product(i: int, j: int) -> Atom:
         if i != j:
-            return b.mul(w[min(i, j)], w[max(i, j)], _entry(hint, min(i, j), max(i, j)))
-        return -b.add((squares[(i + 1) % 3], squares[(i + 2) % 3]), _entry(hint, i, i))
+            return b.mul(w[min(i, j)], w[max(i, j)], entry(hint, min(i, j), max(i, j)))
+        return -b.add((squares[(i + 1) % 3], squares[(i + 2) % 3]), entry(hint, i, i))
 
-    return _entries(entry)
-
-
-def _transpose(of: Components, expr: Any, frame: str, _hint: str) -> Tensor9:
-    t = of.tensor(expr.args[0], frame)
-    return _entries(lambda i, j: t[j][i])
+    return matrix(product)
 
 
-def _total(of: Components, expr: Any, frame: str, hint: str) -> Tensor9:
+def _transpose(of: Components, expr: Any, frame: str, _hint: str) -> Matrix:
+    return transposed(of.tensor(expr.args[0], frame))
+
+
+def _total(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     value, leg_type = expr.args
     t = of.tensor(value, frame)
     stem = f"{hint or 'total'}_{leg_type.name}"
     traceless = _has_no_trace(value)
 
-    def entry(i: int, j: int) -> Atom:
+    def total(i: int, j: int) -> Atom:
         if i == j == 0 and traceless:
-            return -of.b.add([entry(1, 1), entry(2, 2)], _entry(stem, 0, 0))
-        return of.b.total(t[i][j], leg_type.name, _entry(stem, i, j))
+            return -of.b.add([total(1, 1), total(2, 2)], entry(stem, 0, 0))
+        return of.b.total(t[i][j], leg_type.name, entry(stem, i, j))
 
-    found = _entries(entry)
+    found = matrix(total)
     of.note_total(expr, frame, found)
     return found
 
@@ -94,10 +85,6 @@ def _has_no_trace(expr: Any) -> bool:
     return any(
         isinstance(skew, n.Skew) and getattr(other, "is_symmetric", False) for skew, other in pairs
     )
-
-
-def _entry(hint: str, i: int, j: int) -> str:
-    return f"{hint}_{XYZ[i]}{XYZ[j]}" if hint else ""
 
 
 OPERATIONS: dict[type, Any] = {

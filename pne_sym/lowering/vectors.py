@@ -8,11 +8,10 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import ReciprocalBasis
-from pne_sym.lowering.frames import Triple
 from pne_sym.lowering.interface import Components
-from pne_sym.lowering.rotation import XYZ, Tensor9, cross
 from pne_sym.lowering.scalars import divisor_of
 from pne_sym.lowering.statements import Atom
+from pne_sym.lowering.triples import Matrix, Triple, cross, entry, triple
 from pne_sym.vector import nodes as n
 
 
@@ -30,10 +29,8 @@ def _add(of: Components, expr: Any, frame: str, hint: str) -> Triple:
 
 def summed(of: Components, parts: Sequence[Triple], hint: str) -> Triple:
     """Components of a sum."""
-    return tuple(
-        of.b.add([p[i] for p in parts], f"{hint}_{XYZ[i]}" if hint else "", named=bool(hint))
-        for i in range(3)
-    )
+    named = bool(hint)
+    return triple(lambda i: of.b.add([p[i] for p in parts], entry(hint, i), named=named))
 
 
 def _split_duals(of: Components, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
@@ -61,23 +58,17 @@ def _scale(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     if divisor is not None:
         bottom = of.scalar(divisor)
         top = of.scalar(factor * divisor)
-        return tuple(
-            of.b.divide(of.b.mul(top, c), bottom, f"{hint}_{XYZ[i]}" if hint else "")
-            for i, c in enumerate(v)
-        )
+        return triple(lambda i: of.b.divide(of.b.mul(top, v[i]), bottom, entry(hint, i)))
     if all(c == 0 for c in v):
         return v
     s = of.scalar(factor)
-    return tuple(of.b.mul(s, c, f"{hint}_{XYZ[i]}" if hint else "") for i, c in enumerate(v))
+    return triple(lambda i: of.b.mul(s, v[i], entry(hint, i)))
 
 
 def _apply(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     v = of.vector(expr.args[1], frame)
     t = of.tensor(expr.args[0], frame)
-    return tuple(
-        of.b.add([of.b.mul(t[i][k], v[k]) for k in range(3)], f"{hint}_{XYZ[i]}" if hint else "")
-        for i in range(3)
-    )
+    return triple(lambda i: of.b.dot(t[i], v, entry(hint, i)))
 
 
 def _axial(of: Components, expr: Any, frame: str, hint: str) -> Triple:
@@ -89,11 +80,11 @@ def _axial(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     return _moment_of(of, B, S, hint)
 
 
-def _moment_of(of: Components, B: Tensor9, S: Tensor9, hint: str) -> Triple:
+def _moment_of(of: Components, B: Matrix, S: Matrix, hint: str) -> Triple:
     """Axial(B S) for symmetric S, products of inertia taken out once."""
     b = of.b
 
-    def entry(i: int) -> Atom:
+    def moment(i: int) -> Atom:
         j, k = (i + 1) % 3, (i + 2) % 3
         return b.add(
             (
@@ -103,19 +94,17 @@ def _moment_of(of: Components, B: Tensor9, S: Tensor9, hint: str) -> Triple:
                 -b.mul(B[j][i], S[i][k]),
                 -b.mul(B[j][k], S[k][k]),
             ),
-            f"{hint}_{XYZ[i]}" if hint else "",
+            entry(hint, i),
         )
 
-    return (entry(0), entry(1), entry(2))
+    return triple(moment)
 
 
 def _total(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     value, leg_type = expr.args
     v = of.vector(value, frame, f"{hint}_leg" if hint else "")
-    found = tuple(
-        of.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{XYZ[i]}")
-        for i, c in enumerate(v)
-    )
+    stem = f"{hint or 'total'}_{leg_type.name}"
+    found = triple(lambda i: of.b.total(v[i], leg_type.name, entry(stem, i)))
     of.note_total(expr, frame, found)
     return found
 
