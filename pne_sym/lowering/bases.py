@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation, ReciprocalBasis
-from pne_sym.lowering.builder import Builder
+from pne_sym.derivation import ReciprocalBasis
 from pne_sym.lowering.solve import Screws, solve, solve_transposed
 from pne_sym.lowering.statements import Atom
-from pne_sym.lowering.trials import Trials
 from pne_sym.lowering.triples import Triple
 from pne_sym.vector import nodes as n
+
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
 
 
 class Bases:
@@ -25,19 +26,10 @@ class Bases:
         coefficients: name of a moment part -> (basis, number of the wrench, moment direction).
     """
 
-    def __init__(
-        self,
-        derivation: Derivation,
-        builder: Builder,
-        trials: Trials,
-        vector: Callable[[Any, str], Triple],
-        scalar: Callable[[Any], Atom],
-        ensure: Callable[[str], None],
-    ) -> None:
-        self.b, self.trials = builder, trials
-        self.vector, self.scalar, self.ensure = vector, scalar, ensure
-        self.all = derivation.bases
-        complete = [b for b in derivation.bases if len(b.duals) == len(b.vectors)]
+    def __init__(self, of: Lowering) -> None:
+        self.lowering, self.b, self.trials = of, of.b, of.trials
+        self.all = of.d.bases
+        complete = [b for b in self.all if len(b.duals) == len(b.vectors)]
         self.duals = {w.name: (basis, k) for basis in complete for k, w in enumerate(basis.duals)}
         self.coefficients = {
             coefficient.name: (basis, k, i)
@@ -47,7 +39,7 @@ class Bases:
         }
         self._named_parts = {
             (e.rhs.args[0].name, e.rhs.args[1]): e.name
-            for e in derivation.equations()
+            for e in of.definition.values()
             if isinstance(e.rhs, n.Dot) and self.of(e.rhs.args[0]) is not None
         }
         self._frame: dict[int, str] = {}
@@ -61,7 +53,7 @@ class Bases:
         """The frame in which the basis vectors have most zeros."""
         if id(basis) not in self._frame:
             for vector in basis.vectors:
-                self.ensure(getattr(vector, "name", ""))
+                self.lowering.ensure(getattr(vector, "name", ""))
             costs = []
             for frame in basis.frames:
                 trial = self.trials.attempt(partial(self._columns, basis, frame))
@@ -74,8 +66,8 @@ class Bases:
         self, basis: ReciprocalBasis, x: Any, coefficients: Sequence[Any] = ()
     ) -> list[Atom]:
         """w_j . x + sum_i m_ji amount_i for all j: sum v_j y_j = x, moment rows on the right."""
-        moments = [self.scalar(a) for a in coefficients] or [sp.S.Zero] * len(basis.rows)
-        right = [*self.vector(x, self.frame(basis)), *moments]
+        moments = [self.lowering.scalar(a) for a in coefficients] or [sp.S.Zero] * len(basis.rows)
+        right = [*self.lowering.vector(x, self.frame(basis)), *moments]
         hints = [self._named_parts.get((getattr(w, "name", ""), x), "") for w in basis.duals]
         return solve(self.b, self._system(basis), right, hints)
 
@@ -84,7 +76,9 @@ class Bases:
 
         Three components of the force, in the basis's frame, then the moment coefficients.
         """
-        return solve_transposed(self.b, self._system(basis), [self.scalar(g) for g in weights])
+        return solve_transposed(
+            self.b, self._system(basis), [self.lowering.scalar(g) for g in weights]
+        )
 
     def single(self, basis: ReciprocalBasis, k: int) -> list[Atom]:
         """Wrench k alone, as `wrench` does."""
@@ -99,17 +93,17 @@ class Bases:
         )
 
     def _columns(self, basis: ReciprocalBasis, frame: str) -> list[Triple]:
-        return [self.vector(v, frame) for v in basis.vectors]
+        return [self.lowering.vector(v, frame) for v in basis.vectors]
 
     def _system(self, basis: ReciprocalBasis) -> Screws:
         """The screws of a basis, their sizes, and the weights of their moment rows."""
         if id(basis) not in self._screws:
             columns = self._columns(basis, self.frame(basis))
-            moments = [[self.scalar(sp.sympify(e)) for e in row] for row in basis.rows]
+            moments = [[self.lowering.scalar(sp.sympify(e)) for e in row] for row in basis.rows]
             screws = Screws(
                 [*([column[i] for column in columns] for i in range(3)), *moments],
-                [self.scalar(s) for s in basis.scales],
-                [sp.S.One] * 3 + [self.scalar(basis.length)] * len(basis.rows),
+                [self.lowering.scalar(s) for s in basis.scales],
+                [sp.S.One] * 3 + [self.lowering.scalar(basis.length)] * len(basis.rows),
                 self.trials.store,
             )
             self.trials.store(self._screws, id(basis), screws)

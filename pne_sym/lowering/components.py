@@ -25,8 +25,6 @@ from pne_sym.derivation import (
 from pne_sym.lowering import scalars, tensors, vectors
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.frames import Frames
-from pne_sym.lowering.interface import Components
 from pne_sym.lowering.rotation import Rotation
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
@@ -50,7 +48,7 @@ _INDICES: dict[int, list[tuple[int, ...]]] = {
 """Number of components -> their indices."""
 
 
-class Lowering(Components):
+class Lowering:
     """Components of the quantities of one derivation.
 
     Vectors pass from frame to frame joint by joint, or, after `form_tip_axes`, through
@@ -61,6 +59,14 @@ class Lowering(Components):
         derivation: whose quantities they are.
         builder: makes the statements.
         outputs: those that are to be cheap.
+
+    Attributes:
+        given: what is given, by symbol.
+        trials: for ways of which the cheapest is taken.
+        home: the frame in which each quantity was made first; "" of scalars.
+        known: components by name and frame, as far as they are made.
+        rotation: between frames.
+        bases: reciprocal bases, and what is resolved in them.
     """
 
     def __init__(
@@ -73,19 +79,17 @@ class Lowering(Components):
         self._place = {name: k for k, name in enumerate(self.definition)}
         self.given = {g.symbol: g for g in derivation.givens}
         self.trials = Trials(builder)
-        self.home: dict[str, str] = {}  # the frame of each quantity that is made; "" of scalars
-        self._made: dict[tuple[str, str], Any] = {}  # components by name and frame
+        self.home: dict[str, str] = {}
+        self.known: dict[tuple[str, str], Any] = {}
         self._totals: dict[Component, Atom] = {}  # sums over legs, by what they are
         self._in_progress: set[str] = set()
-        frames = Frames(derivation, builder, self.vector, self.scalar, self.trials.store)
-        self.rotation = Rotation(builder, frames, self.trials, self._made, self.definition)
-        self.bases = Bases(derivation, builder, self.trials, self.vector, self.scalar, self.ensure)
+        self.rotation, self.bases = Rotation(self), Bases(self)
 
     # ---- what was made -----------------------------------------------------------------
 
     def components(self) -> Iterator[tuple[Component, Atom]]:
         """All components that were made, of quantities, sums over legs and axes of frames."""
-        found = [(name, frame, atoms(value)) for (name, frame), value in self._made.items()]
+        found = [(name, frame, atoms(value)) for (name, frame), value in self.known.items()]
         for name, frame, value in sorted(found, key=lambda item: len(item[-1])):
             for index, atom in zip(_INDICES[len(value)], value, strict=True):
                 yield Component(name, frame, index), atom
@@ -94,7 +98,7 @@ class Lowering(Components):
 
     def made(self) -> dict[str, tuple[str, tuple[Atom, ...]]]:
         """Frame and components of every quantity, where it was made first."""
-        made = {name: (frame, self._made.get((name, frame))) for name, frame in self.home.items()}
+        made = {name: (frame, self.known.get((name, frame))) for name, frame in self.home.items()}
         return {n: (f, tuple(atoms(value))) for n, (f, value) in made.items() if value is not None}
 
     def note_total(self, expr: Any, frame: str, value: Any) -> None:
@@ -192,7 +196,7 @@ class Lowering(Components):
         """What a condition tests: under a root the square of this, whatever form it took."""
         factors = sp.Mul.make_args(equation.rhs) if equation.forms else ()
         if sp.sqrt(value) in factors:
-            root = self._made[equation.name, ""]
+            root = self.known[equation.name, ""]
             return self.b.mul(root, root)
         return self.scalar(value)
 
@@ -202,7 +206,7 @@ class Lowering(Components):
 
     def _keep(self, name: str) -> None:
         if name in self.home:
-            self.b.keep(atoms(self._made.get((name, self.home[name]), ())))
+            self.b.keep(atoms(self.known.get((name, self.home[name]), ())))
 
     def _lower(self, equation: Equation) -> None:
         name, lhs = equation.name, equation.lhs
@@ -210,7 +214,7 @@ class Lowering(Components):
         if isinstance(lhs, sp.Symbol):
             value = self.trials.cheapest([partial(self.scalar, f, name) for f in forms])
             self.trials.store(self.home, name, "")
-            self.trials.store(self._made, (name, ""), value)
+            self.trials.store(self.known, (name, ""), value)
             return
         frame = self._home_of(name, forms)
         self.trials.store(self.home, name, frame)
@@ -218,7 +222,7 @@ class Lowering(Components):
             value = vectors.single(self, *self.bases.duals[name], frame)
         else:
             value = self.trials.cheapest([partial(self._any, f, frame, name) for f in forms])
-        self.trials.store(self._made, (name, frame), self._symmetrised(lhs, value))
+        self.trials.store(self.known, (name, frame), self._symmetrised(lhs, value))
 
     def _symmetrised(self, symbol: Any, value: Any) -> Any:
         symmetric = isinstance(symbol, n.TensorSymbol) and symbol.is_symmetric
@@ -270,10 +274,10 @@ class Lowering(Components):
 
     def _of_symbol(self, symbol: Any, frame: str) -> Any:
         key = (symbol.name, frame)
-        if key not in self._made and symbol not in self.given:
+        if key not in self.known and symbol not in self.given:
             self.ensure(symbol.name)
-        if key in self._made:
-            return self._made[key]
+        if key in self.known:
+            return self.known[key]
         makers: list[Callable[[], Any]] = [partial(self._turned, symbol, frame)]
         before = self.b.equation
         if symbol.name in self.definition:
@@ -282,7 +286,7 @@ class Lowering(Components):
             self.b.equation = equation.id
         found = self.trials.cheapest(makers)
         self.b.equation = before
-        return self.trials.store(self._made, key, found)
+        return self.trials.store(self.known, key, found)
 
     def _turned(self, symbol: Any, frame: str) -> Any:
         """What is given or was made in its home frame, in another."""
@@ -290,7 +294,7 @@ class Lowering(Components):
             home, value = self.given[symbol].frame, self.given[symbol].components
         else:
             home = self.home[symbol.name]
-            value = self._made[symbol.name, home]
+            value = self.known[symbol.name, home]
         if isinstance(symbol, n.VectorSymbol):
             return self.rotation.vector(value, home, frame, symbol.name)
         rows = value if len(value) == 3 else matrix(lambda i, j: value[3 * i + j])
@@ -328,7 +332,7 @@ class Lowering(Components):
     def _is_there(self, expr: Any, frame: str) -> bool:
         """Whether all vectors of an expression have components in a frame already."""
         return all(
-            (symbol.name, frame) in self._made
+            (symbol.name, frame) in self.known
             or (symbol in self.given and self.given[symbol].frame == frame)
             for symbol in _symbols(expr)
         )
@@ -344,7 +348,7 @@ class Lowering(Components):
     def _scalar_symbol(self, symbol: sp.Symbol) -> Atom:
         if symbol.name in self.definition:
             self.ensure(symbol.name)
-            return self._made[symbol.name, ""]
+            return self.known[symbol.name, ""]
         return symbol
 
 

@@ -7,17 +7,17 @@ steps are multiplied once, among the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Frame
+from pne_sym.derivation import Frame
 from pne_sym.lowering.algebra import negative
-from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.triples import XYZ, Matrix, Triple, matrix, transposed, triple
+
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
 
 
 @dataclass(frozen=True)
@@ -43,19 +43,10 @@ class TurnStep:
 class Frames:
     """The tree of frames of a derivation."""
 
-    def __init__(
-        self,
-        derivation: Derivation,
-        builder: Builder,
-        components: Callable[[Any, str], Triple],
-        scalar: Callable[[Any], Atom],
-        store: Callable[[dict[Any, Any], Any, Any], Any],
-    ) -> None:
-        self.b = builder
-        self._store = store  # forgets with a rolled-back trial
-        self._components = components
-        self._scalar = scalar
-        self._frame = {frame.name: frame for frame in derivation.frames}
+    def __init__(self, of: Lowering) -> None:
+        self.of, self.b = of, of.b
+        self._store = of.trials.store  # forgets with a rolled-back trial
+        self._frame = {frame.name: frame for frame in of.d.frames}
         self._steps: dict[tuple[str, str], list[ConstantStep | TurnStep]] = {}
         self._matrix: dict[str, Matrix] = {}
 
@@ -106,11 +97,11 @@ class Frames:
     def _fill(self, frame: Frame, entries: list[Any]) -> list[Any]:
         assert frame.parent is not None
         if frame.axes is not None:
-            columns = [self._components(axis, frame.parent) for axis in frame.axes]
+            columns = [self.of.vector(axis, frame.parent) for axis in frame.axes]
             found = [c for row in zip(*columns, strict=True) for c in row]
         else:
             assert frame.rows is not None
-            found = [c for row in frame.rows for c in self._components(row, frame.name)]
+            found = [c for row in frame.rows for c in self.of.vector(row, frame.name)]
         return [f if e is None else e for e, f in zip(entries, found, strict=True)]
 
     def _merge(self, path: list[ConstantStep | TurnStep]) -> list[ConstantStep | TurnStep]:
@@ -134,7 +125,7 @@ class Frames:
         if isinstance(step, TurnStep):
             if x == 0 and y == 0:
                 return v
-            c, s = self._scalar(step.c), self._scalar(step.s)
+            c, s = self.of.scalar(step.c), self.of.scalar(step.s)
             s = s if step.sign == 1 else negative(s)
             return (
                 b.add((b.mul(c, x), b.mul(s, y)), f"{hint}_x"),

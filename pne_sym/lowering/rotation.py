@@ -5,17 +5,14 @@ Which is cheaper depends on what is there already and on how many vectors pass.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from pne_sym.derivation import Equation
-from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.frames import ConstantStep, Frames
 from pne_sym.lowering.statements import Atom
-from pne_sym.lowering.trials import Trials
 from pne_sym.lowering.triples import (
     XYZ,
     Matrix,
@@ -31,27 +28,17 @@ from pne_sym.lowering.triples import (
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
+
 _NONE = (sp.S.Zero,) * 3
 
 
 class Rotation:
-    """Turns components of vectors and tensors into those in another frame.
+    """Turns components of vectors and tensors into those in another frame."""
 
-    Attributes:
-        made: components by (name, frame), as far as they are known.
-        definition: equation of each named quantity.
-    """
-
-    def __init__(
-        self,
-        builder: Builder,
-        frames: Frames,
-        trials: Trials,
-        made: Mapping[tuple[str, str], Any],
-        definition: Mapping[str, Equation],
-    ) -> None:
-        self.b, self.frames, self.trials = builder, frames, trials
-        self.made, self.definition = made, definition
+    def __init__(self, of: Lowering) -> None:
+        self.of, self.b, self.trials, self.frames = of, of.b, of.trials, Frames(of)
         self._axis_columns: dict[tuple[str, str, int], Triple] = {}
 
     def vector(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
@@ -111,7 +98,7 @@ class Rotation:
 
     def along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
         """A way by a vector whose only component in the origin frame is its k-th."""
-        for (name, frame), v in self.made.items():
+        for (name, frame), v in self.of.known.items():
             if frame == origin and not isinstance(v[k], tuple) and not v[k].is_Number:
                 same = self._same_vector(name, target) if v.count(0) == 2 else None
                 if same is not None:
@@ -123,10 +110,11 @@ class Rotation:
 
     def _same_vector(self, name: str, target: str) -> Triple | None:
         """Components in the target of a vector or of an equal one."""
-        forms = self.definition[name].forms if name in self.definition else ()
+        definition, known = self.of.definition, self.of.known
+        forms = definition[name].forms if name in definition else ()
         equal = [form.name for form in forms if isinstance(form, n.VectorSymbol)]
-        there = ((same, target) for same in (name, *equal) if (same, target) in self.made)
-        return next((self.made[key] for key in there), None)
+        there = ((same, target) for same in (name, *equal) if (same, target) in known)
+        return next((known[key] for key in there), None)
 
     def tensor(
         self, t: Matrix, origin: str, target: str, symmetric: bool, hint: str = ""

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from pne_sym.derivation import ReciprocalBasis
-from pne_sym.lowering.interface import Components
 from pne_sym.lowering.statements import Atom
 from pne_sym.vector import nodes as n
 
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
 
-def atom_of(of: Components, expr: Any, hint: str) -> Atom:
+
+def atom_of(of: Lowering, expr: Any, hint: str) -> Atom:
     """The atom of a scalar expression that is no number and no symbol."""
     if isinstance(expr, n.Dot):
         return _dot(of, expr, hint)
@@ -37,13 +39,13 @@ def atom_of(of: Components, expr: Any, hint: str) -> Atom:
     return of.b.let(expr.func(*(of.scalar(a) for a in expr.args)), hint, named=bool(hint))
 
 
-def _moment_part(of: Components, expr: Any) -> Atom:
+def _moment_part(of: Lowering, expr: Any) -> Atom:
     """Moment part i of reciprocal wrench k."""
     k, i, *screws = expr.args
     return of.bases.single(of.bases.of_screws(*screws), int(k))[3 + int(i)]
 
 
-def _add(of: Components, expr: Any, hint: str) -> Atom:
+def _add(of: Lowering, expr: Any, hint: str) -> Atom:
     """A sum; what resolves a twist or a wrench along one basis is solved for at once."""
     plain: list[Any] = []
     twists: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
@@ -76,7 +78,7 @@ def _add(of: Components, expr: Any, hint: str) -> Atom:
     return of.b.add(parts, hint, named=bool(hint))
 
 
-def _product(of: Components, expr: Any, hint: str) -> Atom:
+def _product(of: Lowering, expr: Any, hint: str) -> Atom:
     divisor = divisor_of(expr)
     if divisor is not None:
         top = of.scalar(expr * divisor)
@@ -88,7 +90,7 @@ def _product(of: Components, expr: Any, hint: str) -> Atom:
     return result
 
 
-def _power(of: Components, base: Any, exponent: Any, hint: str) -> Atom:
+def _power(of: Lowering, base: Any, exponent: Any, hint: str) -> Atom:
     value = of.scalar(base)
     if exponent == -1:
         return of.b.inverse(value)
@@ -104,7 +106,7 @@ def _power(of: Components, base: Any, exponent: Any, hint: str) -> Atom:
     return of.b.inverse(result) if exponent < 0 else result
 
 
-def _dot(of: Components, expr: Any, hint: str) -> Atom:
+def _dot(of: Lowering, expr: Any, hint: str) -> Atom:
     a, c = expr.args
     for dual, other in ((a, c), (c, a)):
         found = of.bases.of(dual)
@@ -115,13 +117,13 @@ def _dot(of: Components, expr: Any, hint: str) -> Atom:
     return of.trials.cheapest([partial(_dot_in, of, a, c, f, hint) for f in frames])
 
 
-def _coordinates(of: Components, expr: Any) -> set[str]:
+def _coordinates(of: Lowering, expr: Any) -> set[str]:
     """Frames along whose axes a factor of a scalar product lies: it is a component there."""
     given = (of.given[factor] for factor in expr.args if factor in of.given)
     return {g.frame for g in given if all(c.is_Integer for c in g.components)}
 
 
-def _dot_in(of: Components, a: Any, c: Any, frame: str, hint: str) -> Atom:
+def _dot_in(of: Lowering, a: Any, c: Any, frame: str, hint: str) -> Atom:
     u, v = of.vector(a, frame), of.vector(c, frame)
     return of.b.dot(u, v, hint, named=True)
 

@@ -2,38 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from pne_sym.lowering.interface import Components
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.triples import Matrix, Triple, entry, matrix, transposed
 from pne_sym.vector import nodes as n
 
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
 
-def _add(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
+
+def _add(of: Lowering, expr: Any, frame: str, hint: str) -> Matrix:
     parts = [of.tensor(term, frame) for term in expr.args]
     return matrix(lambda i, j: of.b.add([p[i][j] for p in parts], entry(hint, i, j)))
 
 
-def _scale(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
+def _scale(of: Lowering, expr: Any, frame: str, hint: str) -> Matrix:
     s, t = of.scalar(expr.args[0]), of.tensor(expr.args[1], frame)
     return matrix(lambda i, j: of.b.mul(s, t[i][j], entry(hint, i, j)))
 
 
-def _skew(of: Components, expr: Any, frame: str, _hint: str) -> Matrix:
+def _skew(of: Lowering, expr: Any, frame: str, _hint: str) -> Matrix:
     x, y, z = of.vector(expr.args[0], frame)
     zero = sp.S.Zero
     return ((zero, -z, y), (z, zero, -x), (-y, x, zero))
 
 
-def _outer(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
+def _outer(of: Lowering, expr: Any, frame: str, hint: str) -> Matrix:
     a, c = of.vector(expr.args[0], frame), of.vector(expr.args[1], frame)
     return matrix(lambda i, j: of.b.mul(a[i], c[j], entry(hint, i, j)))
 
 
-def _compose(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
+def _compose(of: Lowering, expr: Any, frame: str, hint: str) -> Matrix:
     first, second = expr.args
     if isinstance(first, n.Skew) and first == second:
         return _skew_squared(of, of.vector(first.args[0], frame), hint)
@@ -41,7 +43,7 @@ def _compose(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
     return matrix(lambda i, j: of.b.dot(a[i], columns[j], entry(hint, i, j)))
 
 
-def _skew_squared(of: Components, w: Triple, hint: str) -> Matrix:
+def _skew_squared(of: Lowering, w: Triple, hint: str) -> Matrix:
     """w~ w~ = w w^T - (w . w) E: squares once."""
     b = of.b
     squares = [b.mul(c, c) for c in w]
@@ -54,11 +56,11 @@ def _skew_squared(of: Components, w: Triple, hint: str) -> Matrix:
     return matrix(product)
 
 
-def _transpose(of: Components, expr: Any, frame: str, _hint: str) -> Matrix:
+def _transpose(of: Lowering, expr: Any, frame: str, _hint: str) -> Matrix:
     return transposed(of.tensor(expr.args[0], frame))
 
 
-def _total(of: Components, expr: Any, frame: str, hint: str) -> Matrix:
+def _total(of: Lowering, expr: Any, frame: str, hint: str) -> Matrix:
     value, leg_type = expr.args
     t = of.tensor(value, frame)
     stem = f"{hint or 'total'}_{leg_type.name}"

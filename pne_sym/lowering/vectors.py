@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from pne_sym.derivation import ReciprocalBasis
-from pne_sym.lowering.interface import Components
 from pne_sym.lowering.scalars import divisor_of
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.triples import Matrix, Triple, cross, entry, triple
 from pne_sym.vector import nodes as n
 
+if TYPE_CHECKING:
+    from pne_sym.lowering.components import Lowering
 
-def _cross(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+
+def _cross(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     return cross(of.b, of.vector(expr.args[0], frame), of.vector(expr.args[1], frame), hint)
 
 
-def _add(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+def _add(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     plain, duals = _split_duals(of, expr.args)
     parts = [of.vector(term, frame) for term in plain]
     for basis, weights in duals:
@@ -27,13 +29,13 @@ def _add(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     return summed(of, parts, hint)
 
 
-def summed(of: Components, parts: Sequence[Triple], hint: str) -> Triple:
+def summed(of: Lowering, parts: Sequence[Triple], hint: str) -> Triple:
     """Components of a sum."""
     named = bool(hint)
     return triple(lambda i: of.b.add([p[i] for p in parts], entry(hint, i), named=named))
 
 
-def _split_duals(of: Components, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
+def _split_duals(of: Lowering, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
     """Terms, and combinations of reciprocal vectors by basis."""
     plain: list[Any] = []
     weights: dict[int, tuple[ReciprocalBasis, list[Any]]] = {}
@@ -49,7 +51,7 @@ def _split_duals(of: Components, terms: Iterable[Any]) -> tuple[list[Any], list[
     return plain, list(weights.values())
 
 
-def _scale(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+def _scale(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     factor, vector = expr.args
     if of.bases.of(vector) is not None:
         return _add(of, n.VectorAdd(expr), frame, hint)
@@ -65,13 +67,13 @@ def _scale(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     return triple(lambda i: of.b.mul(s, v[i], entry(hint, i)))
 
 
-def _apply(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+def _apply(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     v = of.vector(expr.args[1], frame)
     t = of.tensor(expr.args[0], frame)
     return triple(lambda i: of.b.dot(t[i], v, entry(hint, i)))
 
 
-def _axial(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+def _axial(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     """Of B S with symmetric S alone: nothing else has an axial vector in a derivation."""
     inner = expr.args[0]
     if not (isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False)):
@@ -80,7 +82,7 @@ def _axial(of: Components, expr: Any, frame: str, hint: str) -> Triple:
     return _moment_of(of, B, S, hint)
 
 
-def _moment_of(of: Components, B: Matrix, S: Matrix, hint: str) -> Triple:
+def _moment_of(of: Lowering, B: Matrix, S: Matrix, hint: str) -> Triple:
     """Axial(B S) for symmetric S, products of inertia taken out once."""
     b = of.b
 
@@ -100,7 +102,7 @@ def _moment_of(of: Components, B: Matrix, S: Matrix, hint: str) -> Triple:
     return triple(moment)
 
 
-def _total(of: Components, expr: Any, frame: str, hint: str) -> Triple:
+def _total(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     value, leg_type = expr.args
     v = of.vector(value, frame, f"{hint}_leg" if hint else "")
     stem = f"{hint or 'total'}_{leg_type.name}"
@@ -110,20 +112,20 @@ def _total(of: Components, expr: Any, frame: str, hint: str) -> Triple:
 
 
 def _combination(
-    of: Components, basis: ReciprocalBasis, weights: Sequence[Any], frame: str
+    of: Lowering, basis: ReciprocalBasis, weights: Sequence[Any], frame: str
 ) -> Triple:
     """Force part of sum g_j (w_j; m_j)."""
     x, y, z, *_ = of.bases.wrench(basis, weights)
     return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
 
 
-def single(of: Components, basis: ReciprocalBasis, k: int, frame: str) -> Triple:
+def single(of: Lowering, basis: ReciprocalBasis, k: int, frame: str) -> Triple:
     """Force part of reciprocal wrench k."""
     x, y, z, *_ = of.bases.single(basis, k)
     return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
 
 
-def _dual(of: Components, expr: Any, frame: str, _hint: str) -> Triple:
+def _dual(of: Lowering, expr: Any, frame: str, _hint: str) -> Triple:
     k, *screws = expr.args
     return single(of, of.bases.of_screws(*screws), int(k), frame)
 

@@ -16,7 +16,7 @@ from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import ParameterTable
 from pne_sym.lowering import tensors
-from pne_sym.lowering.interface import Components
+from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.program import lower
 from pne_sym.model.reader import from_text
 from pne_sym.pipeline import compile_bundle
@@ -274,7 +274,7 @@ def test_a_fault_in_a_product_of_tensors(monkeypatch: pytest.MonkeyPatch) -> Non
     """In the lowering's own code, against a folder of before: no statement is as it was."""
     right = tensors._skew_squared
 
-    def wrong(of: Components, w: Any, hint: str) -> Any:
+    def wrong(of: Lowering, w: Any, hint: str) -> Any:
         rows = right(of, w, hint)
         return tuple(
             tuple(-e if i != j else e for j, e in enumerate(r)) for i, r in enumerate(rows)
