@@ -28,17 +28,16 @@ from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.rotation import Rotation
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
-from pne_sym.lowering.triples import Matrix, Triple, matrix, symmetrised
+from pne_sym.lowering.triples import IDENTITY, Matrix, Triple, matrix, symmetrised
 from pne_sym.lowering.uses import uses
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
-_ZERO, _ONE = sp.S.Zero, sp.S.One
 _OPERATIONS = vectors.OPERATIONS | tensors.OPERATIONS
 _CONSTANTS: dict[Any, Any] = {
-    n.ZeroVector: (_ZERO,) * 3,
-    n.ZeroTensor: ((_ZERO,) * 3,) * 3,
-    n.Identity: matrix(lambda i, j: _ONE if i == j else _ZERO),
+    n.ZeroVector: (sp.S.Zero,) * 3,
+    n.ZeroTensor: ((sp.S.Zero,) * 3,) * 3,
+    n.Identity: IDENTITY,
 }
 _INDICES: dict[int, list[tuple[int, ...]]] = {
     1: [()],

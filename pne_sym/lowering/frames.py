@@ -14,17 +14,10 @@ import sympy as sp
 
 from pne_sym.derivation import Frame
 from pne_sym.lowering.algebra import negative
-from pne_sym.lowering.triples import XYZ, Matrix, Triple, matrix, transposed, triple
+from pne_sym.lowering.triples import IDENTITY, XYZ, Matrix, Triple, matrix, transposed, triple
 
 if TYPE_CHECKING:
     from pne_sym.lowering.components import Lowering
-
-
-@dataclass(frozen=True)
-class ConstantStep:
-    """v_to = matrix v_from."""
-
-    matrix: Matrix
 
 
 @dataclass(frozen=True)
@@ -40,6 +33,10 @@ class TurnStep:
     sign: int
 
 
+Step = Matrix | TurnStep
+"""From frame to frame; a matrix is what components are multiplied by."""
+
+
 class Frames:
     """The tree of frames of a derivation."""
 
@@ -47,10 +44,10 @@ class Frames:
         self.of, self.b = of, of.b
         self._store = of.trials.store  # forgets with a rolled-back trial
         self._frame = {frame.name: frame for frame in of.d.frames}
-        self._steps: dict[tuple[str, str], list[ConstantStep | TurnStep]] = {}
+        self._steps: dict[tuple[str, str], list[Step]] = {}
         self._matrix: dict[str, Matrix] = {}
 
-    def steps(self, origin: str, target: str) -> list[ConstantStep | TurnStep]:
+    def steps(self, origin: str, target: str) -> list[Step]:
         """Steps from one frame to another, constant neighbours merged."""
         key = (origin, target)
         if key not in self._steps:
@@ -63,25 +60,18 @@ class Frames:
             line.append(parent)
         return line
 
-    def _path(self, origin: str, target: str) -> list[ConstantStep | TurnStep]:
+    def _path(self, origin: str, target: str) -> list[Step]:
         up, down = self._ancestors(origin), self._ancestors(target)
         common = next(name for name in up if name in down)
-        path: list[ConstantStep | TurnStep] = []
-        for name in up[: up.index(common)]:
-            path.append(self._to_parent(self._frame[name]))
-        for name in reversed(down[: down.index(common)]):
-            path.append(self._to_child(self._frame[name]))
-        return path
+        ways = ((up[: up.index(common)], -1), (down[: down.index(common)][::-1], 1))
+        return [self._step(self._frame[name], sign) for names, sign in ways for name in names]
 
-    def _to_child(self, frame: Frame) -> ConstantStep | TurnStep:
+    def _step(self, frame: Frame, sign: int) -> Step:
+        """From a frame to its parent (-1), or from there."""
         if frame.angle is not None:
-            return TurnStep(*frame.angle, 1)
-        return ConstantStep(transposed(self.matrix(frame)))
-
-    def _to_parent(self, frame: Frame) -> ConstantStep | TurnStep:
-        if frame.angle is not None:
-            return TurnStep(*frame.angle, -1)
-        return ConstantStep(self.matrix(frame))
+            return TurnStep(*frame.angle, sign)
+        to_parent = self.matrix(frame)
+        return to_parent if sign < 0 else transposed(to_parent)
 
     def matrix(self, frame: Frame) -> Matrix:
         """parent_R_child of a frame that does not turn."""
@@ -104,22 +94,21 @@ class Frames:
             found = [c for row in frame.rows for c in self.of.vector(row, frame.name)]
         return [f if e is None else e for e, f in zip(entries, found, strict=True)]
 
-    def _merge(self, path: list[ConstantStep | TurnStep]) -> list[ConstantStep | TurnStep]:
-        merged: list[ConstantStep | TurnStep] = []
+    def _merge(self, path: list[Step]) -> list[Step]:
+        merged: list[Step] = []
         for step in path:
             last = merged[-1] if merged else None
-            if isinstance(step, ConstantStep) and isinstance(last, ConstantStep):
-                product = self._product(step.matrix, last.matrix)
-                merged[-1] = ConstantStep(product)
-            else:
+            if last is None or isinstance(step, TurnStep) or isinstance(last, TurnStep):
                 merged.append(step)
-        return [s for s in merged if not (isinstance(s, ConstantStep) and _is_identity(s.matrix))]
+            else:
+                merged[-1] = self._product(step, last)
+        return [step for step in merged if step != IDENTITY]
 
     def _product(self, a: Matrix, b: Matrix) -> Matrix:
         columns = transposed(b)
         return matrix(lambda i, j: self.b.dot(a[i], columns[j]))
 
-    def apply(self, step: ConstantStep | TurnStep, v: Triple, hint: str = "") -> Triple:
+    def apply(self, step: Step, v: Triple, hint: str = "") -> Triple:
         """Components after a step."""
         b, (x, y, z) = self.b, v
         if isinstance(step, TurnStep):
@@ -132,8 +121,4 @@ class Frames:
                 b.add((b.mul(c, y), negative(b.mul(s, x))), f"{hint}_y"),
                 z,
             )
-        return triple(lambda i: b.dot(step.matrix[i], v, f"{hint}_{XYZ[i]}"))
-
-
-def _is_identity(m: Matrix) -> bool:
-    return all(m[i][j] == (1 if i == j else 0) for i in range(3) for j in range(3))
+        return triple(lambda i: b.dot(step[i], v, f"{hint}_{XYZ[i]}"))

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from itertools import combinations_with_replacement
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import PLATFORM, Derivation, Role
+from pne_sym.lowering.algebra import symbol as as_symbol
 from pne_sym.program.ir import Assignment, Check
-
-_AXES = "xyz"
 
 
 def entry(vector: str, index: int) -> sp.Symbol:
     """Symbol of an entry of an input vector."""
-    return sp.Symbol(f"{vector}_{index}", real=True)
+    return as_symbol(f"{vector}_{index}")
 
 
 def unpack(derivation: Derivation) -> dict[str, tuple[list[Assignment], list[Check]]]:
@@ -26,10 +26,6 @@ def unpack(derivation: Derivation) -> dict[str, tuple[list[Assignment], list[Che
         "V": (_twist(derivation, "V", Role.VELOCITY, Role.ANGULAR_VELOCITY), []),
         "A": (_twist(derivation, "A", Role.ACCELERATION, Role.ANGULAR_ACCELERATION), []),
     }
-
-
-def _symbol(name: str) -> sp.Symbol:
-    return sp.Symbol(name, real=True)
 
 
 def _components(derivation: Derivation, role: Role) -> tuple[Any, ...]:
@@ -73,7 +69,7 @@ def _base(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
         return [], []
     rows = sp.Matrix(3, 3, rotation)
     off = (rows * rows.T - sp.eye(3)).applyfunc(lambda e: e**2)
-    margin, turn = _symbol("base_margin"), _symbol("base_turn")
+    margin, turn = as_symbol("base_margin"), as_symbol("base_turn")
     made.append(Assignment(margin, _NEAR**2 - sum(off), "base"))
     made.append(Assignment(turn, rows.row(0).cross(rows.row(1)).dot(rows.row(2)), "base"))
     return made, [Check("invalid", s, sp.S.One, 1, "base") for s in (margin, turn)]
@@ -108,28 +104,23 @@ def _quaternion(first: int, rotation: tuple[Any, ...]) -> tuple[list[Assignment]
     The scale is zero where the squared length overflows, and not finite where that is too small.
     """
     x, y, z, w = (entry("X", first + k) for k in range(4))
-    n, s = _symbol("quaternion_norm2"), _symbol("quaternion_scale")
+    n, s = as_symbol("quaternion_norm2"), as_symbol("quaternion_scale")
     made: list[Assignment] = [
         Assignment(n, x * x + y * y + z * z + w * w, "X"),
         Assignment(s, 2 / n, "X"),
     ]
 
     def let(name: str, expr: Any) -> sp.Symbol:
-        symbol = _symbol(name)
+        symbol = as_symbol(name)
         made.append(Assignment(symbol, expr, "X"))
         return symbol
 
-    sx, sy, sz = (let(f"quaternion_s{a}", s * q) for a, q in zip(_AXES, (x, y, z), strict=True))
-    wx, wy, wz = (let(f"quaternion_w{a}", w * q) for a, q in zip(_AXES, (sx, sy, sz), strict=True))
-    xx, xy, xz = (
-        let("quaternion_xx", x * sx),
-        let("quaternion_xy", x * sy),
-        let("quaternion_xz", x * sz),
-    )
-    yy, yz, zz = (
-        let("quaternion_yy", y * sy),
-        let("quaternion_yz", y * sz),
-        let("quaternion_zz", z * sz),
+    named = {"x": x, "y": y, "z": z}
+    scaled = {a: let(f"quaternion_s{a}", s * q) for a, q in named.items()}
+    wx, wy, wz = (let(f"quaternion_w{a}", w * q) for a, q in scaled.items())
+    xx, xy, xz, yy, yz, zz = (
+        let(f"quaternion_{a}{b}", named[a] * scaled[b])
+        for a, b in combinations_with_replacement("xyz", 2)
     )
     rows = (
         (1 - (yy + zz), xy - wz, xz + wy),

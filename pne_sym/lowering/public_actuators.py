@@ -144,8 +144,5 @@ def _motors(w: Writer) -> list[PublicFunction]:
 
 def _related(w: Writer, a: Algorithm, id_: str) -> Value:
     """What a relation between arrays of coupled motors defines."""
-    (uses,) = (r.uses for r in w.program.relations if r.id == id_)
-    arrays = [name for name in uses if name != "tau"]
-    values = {"tau": w.given("tau").value}
-    values |= dict(zip(arrays, a.run("motors", w.program, *arrays), strict=True))
+    values = {"tau": w.given("tau").value, **a.run_all("motors", w.program)}
     return a.relate(w.program, id_, values)

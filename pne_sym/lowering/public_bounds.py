@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from pne_sym.lowering.public_forces import force_outputs, required_forces, shared_forces
+from pne_sym.lowering.public_forces import (
+    force_of_motion,
+    force_outputs,
+    needed_force,
+    required_forces,
+    shared_forces,
+)
 from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import PublicFunction, Value
@@ -18,9 +24,7 @@ def bounded_functions(w: Writer) -> list[PublicFunction]:
 
 def _reachable_wrench(w: Writer) -> PublicFunction:
     a = Algorithm()
-    names = ["required", "H", *(["Hk"] if w.constrained else [])]
-    required, *actuators = a.run("required", w.program, *names)
-    needed = a.apply("subtract", required, w.external(a))
+    needed, actuators = needed_force(w, a)
     way = a.apply("extend", w.given("wrench_direction").value, numbers=[w.n["NV"]])
     more = a.apply("negative", way)
     return _reachable(w, a, "wrench", (needed, more, actuators))
@@ -28,10 +32,7 @@ def _reachable_wrench(w: Writer) -> PublicFunction:
 
 def _reachable_acceleration(w: Writer) -> PublicFunction:
     a = Algorithm()
-    names = ["M", "Z", "H", *(["Hk"] if w.constrained else [])]
-    M, Z, *actuators = a.run("dynamics", w.program, *names)
-    needed = a.apply("add", a.apply("times", M, w.given("A").value), Z)
-    needed = a.apply("subtract", needed, w.external(a))
+    M, needed, actuators = force_of_motion(w, a, w.given("A").value)
     more = a.apply("times", M, w.given("direction").value)
     return _reachable(w, a, "acceleration", (needed, more, actuators))
 
@@ -71,9 +72,7 @@ def _reachable(
 def _force_distribution(w: Writer) -> PublicFunction:
     """Forces within bounds, nearest to a reference."""
     a = Algorithm()
-    names = ["required", "H", *(["Hk"] if w.constrained else [])]
-    required, *actuators = a.run("required", w.program, *names)
-    needed = a.apply("subtract", required, w.external(a))
+    needed, actuators = needed_force(w, a)
 
     def chosen(least: Value, matrix: Value) -> Value:
         basis = a.apply("null_basis", matrix, numbers=[matrix.shape[0]])

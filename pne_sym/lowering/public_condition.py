@@ -70,8 +70,7 @@ def conditioning_functions(w: Writer, rows: tuple[int, ...]) -> list[PublicFunct
 
 def _manipulability(w: Writer, rows: tuple[int, ...], effective: int) -> PublicFunction:
     a = Algorithm()
-    arrays = ["lengths", "H", *(["Hk"] if w.constrained else [])]
-    lengths, H, *constraints = a.run("condition", w.program, *arrays)
+    lengths, H, *constraints = a.run("condition", w.program, "lengths", "H", "Hk")
     H = _scaled(a, H, lengths, None, rows)
     if constraints:  # on the motions that are left
         held = a.apply("transposed", _scaled(a, constraints[0], lengths, None, rows))
@@ -94,8 +93,7 @@ def _manipulability(w: Writer, rows: tuple[int, ...], effective: int) -> PublicF
 
 def _singularity_distance(w: Writer, rows: tuple[int, ...]) -> PublicFunction:
     a = Algorithm()
-    arrays = ["lengths", "pivots", "H", *(["Hk"] if w.constrained else [])]
-    lengths, legs, *found = a.run("condition", w.program, *arrays)
+    lengths, legs, *found = a.run("condition", w.program, "lengths", "pivots", "H", "Hk")
     sigma = scaled_values(a, found, lengths, None, rows)
     rank = min(w.c.actuation.rank if w.constrained else w.c.actuation.force_rank, sigma.size)
     _, distance = a.apply_all("spread", sigma, numbers=[rank])

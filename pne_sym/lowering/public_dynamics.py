@@ -5,7 +5,14 @@ Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints 
 
 from __future__ import annotations
 
-from pne_sym.lowering.public_forces import force_outputs, multipliers, required_forces, resolved
+from pne_sym.lowering.public_forces import (
+    force_of_motion,
+    force_outputs,
+    multipliers,
+    needed_force,
+    required_forces,
+    resolved,
+)
 from pne_sym.lowering.public_writer import Writer
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import PublicFunction, Value
@@ -25,9 +32,7 @@ def dynamics_functions(w: Writer) -> list[PublicFunction]:
 
 def _inverse_dynamics(w: Writer) -> PublicFunction:
     a = Algorithm()
-    names = ["required", "H", *(["Hk"] if w.constrained else [])]
-    required, *actuators = a.run("required", w.program, *names)
-    needed = a.apply("subtract", required, w.external(a))
+    needed, actuators = needed_force(w, a)
     outputs = force_outputs(w, *required_forces(w, a, needed, actuators, weighted=True))
     return w.function(
         "inverse_dynamics",
@@ -42,7 +47,7 @@ def _inverse_dynamics(w: Writer) -> PublicFunction:
 
 def _forward_dynamics(w: Writer) -> PublicFunction:
     a = Algorithm()
-    names = ["M", "Z", "H", *(["Hk", "constraint_bias"] if w.constrained else [])]
+    names = ("M", "Z", "H", "Hk", "constraint_bias")
     M, Z, H, *constraint = a.run("dynamics", w.program, *names)
     force = a.apply("times", H, w.given("tau").value)
     force = a.apply("subtract", a.apply("add", force, w.external(a)), Z)
@@ -107,10 +112,7 @@ def _completed(w: Writer, a: Algorithm, A: Value) -> Value:
     facts = w.c.actuation
     unique = facts.idle == len(facts.passive)
     known = a.apply("clear_at", A, numbers=facts.passive) if unique else A
-    names = ["M", "Z", "H", *(["Hk"] if w.constrained else [])]
-    M, Z, *actuators = a.run("dynamics", w.program, *names)
-    needed = a.apply("add", a.apply("times", M, known), Z)
-    needed = a.apply("subtract", needed, w.external(a))
+    M, needed, actuators = force_of_motion(w, a, known)
     columns = a.apply("take_columns", M, numbers=facts.passive)
     own = a.apply("take", columns, numbers=facts.passive)
     if facts.is_coupled:
@@ -131,17 +133,13 @@ def _completed(w: Writer, a: Algorithm, A: Value) -> Value:
 
 def _leg_reactions(w: Writer) -> PublicFunction:
     a = Algorithm()
-    given = w.program.functions["required"].arrays
-    values = dict(zip(given, a.run("required", w.program, *given), strict=True))
+    values = a.run_all("required", w.program)
     actuators = [values[name] for name in ("H", "Hk") if name in values]
     needed = a.apply("subtract", values["required"], w.external(a))
     tau, *lam = required_forces(w, a, needed, actuators)
     efforts = [a.without_rotors(w.program, tau, values), *lam]
-    arrays = w.program.functions["legs"].arrays
-    shape = w.program.shapes["leg_force"]
-    found = dict(zip(arrays, a.run("legs", w.program, *arrays), strict=True))
-    forces = found.get("leg_force")
-    assert forces is not None
+    found = a.run_all("legs", w.program)
+    forces = found["leg_force"]
     legs = {
         "actuator": [leg for leg, _ in w.c.actuators],
         "constraint_direction": w.c.constraints,
@@ -154,7 +152,7 @@ def _leg_reactions(w: Writer) -> PublicFunction:
         f"{kind} of each leg on the platform at its platform joint, base axes.",
         "X V A wrench",
         a,
-        w.made(forces, "forces", "leg on platform [N, N m]", str(shape[0]), str(shape[1])),
+        w.made(forces, "forces", "leg on platform [N, N m]", *map(str, forces.shape)),
         counted="legs",
         also="inverse dynamics",
     )

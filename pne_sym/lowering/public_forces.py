@@ -9,6 +9,19 @@ from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.public import Argument, Value
 
 
+def needed_force(w: Writer, a: Algorithm) -> tuple[Value, list[Value]]:
+    """The force that the acceleration A takes beside the wrench; H and, if there is one, Hk."""
+    required, *actuators = a.run("required", w.program, "required", "H", "Hk")
+    return a.apply("subtract", required, w.external(a)), actuators
+
+
+def force_of_motion(w: Writer, a: Algorithm, A: Value) -> tuple[Value, Value, list[Value]]:
+    """M; M A + Z less the wrench; H and, if there is one, Hk."""
+    M, Z, *actuators = a.run("dynamics", w.program, "M", "Z", "H", "Hk")
+    needed = a.apply("add", a.apply("times", M, A), Z)
+    return M, a.apply("subtract", needed, w.external(a)), actuators
+
+
 def required_forces(
     w: Writer,
     a: Algorithm,

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from pne_sym.lowering.frames import ConstantStep, Frames
+from pne_sym.lowering.frames import Frames, TurnStep
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.triples import (
+    IDENTITY,
     XYZ,
     Matrix,
     Triple,
@@ -46,14 +47,11 @@ class Rotation:
         if origin == target or all(c == 0 for c in v):
             return v
         makers = [lambda: self._by_steps(v, origin, target, hint)]
-        if origin == "base" and self._has_columns(target):
+        if origin == "base" and all((target, "base", k) in self._axis_columns for k in range(3)):
             makers.append(lambda: self._by_rows(v, target, hint))
         if target == "base" and origin != "platform":
             makers.append(lambda: self._by_columns(v, origin, target, hint))
         return self.trials.cheapest(makers)
-
-    def _has_columns(self, frame: str) -> bool:
-        return all((frame, "base", k) in self._axis_columns for k in range(3))
 
     def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
         axes = triple(lambda k: self.axis_column(frame, "base", k))
@@ -84,9 +82,10 @@ class Rotation:
         key = (origin, target, k)
         if key in self._axis_columns:
             return self._axis_columns[key]
-        unit = triple(lambda i: sp.Integer(int(i == k)))
         hint = f"axis_{XYZ[k]}_{origin.replace('.', '_')}"
-        makers: list[Callable[[], Triple]] = [lambda: self._by_steps(unit, origin, target, hint)]
+        makers: list[Callable[[], Triple]] = [
+            lambda: self._by_steps(IDENTITY[k], origin, target, hint)
+        ]
         along = self.along(origin, target, k)
         if along is not None:
             makers.append(along)
@@ -124,32 +123,26 @@ class Rotation:
             return t
         makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
         if target == "base" and origin != "platform" and not symmetric:
-            makers.append(lambda: self._tensor_by_axes(t, origin, hint))
+            # A T A^T with the axes A of the frame of origin in base axes
+            by_columns = partial(self._by_columns, origin=origin, target="base", hint=hint)
+            makers.append(lambda: on_both_sides(by_columns, t))
         if symmetric and target == "base":
-            makers += [
-                partial(self._tensor_by_columns, t, origin, target, k, hint) for k in range(3)
-            ]
+            makers += [partial(self._tensor_by_columns, t, origin, target, k) for k in range(3)]
         return self.trials.cheapest(makers)
 
     def _tensor_by_steps(self, t: Matrix, origin: str, target: str, symmetric: bool) -> Matrix:
         for step in self.frames.steps(origin, target):
             t = on_both_sides(partial(self.frames.apply, step), t)
-            if symmetric and isinstance(step, ConstantStep):
+            if symmetric and not isinstance(step, TurnStep):
                 t = symmetrised(self.b, t)
         return symmetrised(self.b, t) if symmetric else t
 
-    def _tensor_by_axes(self, t: Matrix, origin: str, hint: str) -> Matrix:
-        """A T A^T with the axes A of the frame of origin in base axes: columns, then rows."""
-        return on_both_sides(lambda v: self._by_columns(v, origin, "base", hint), t)
-
-    def _tensor_by_columns(
-        self, t: Matrix, origin: str, target: str, left: int, hint: str
-    ) -> Matrix:
+    def _tensor_by_columns(self, t: Matrix, origin: str, target: str, k: int) -> Matrix:
         """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated.
 
         Where no entry on the diagonal stays, the last follows from the trace, which does.
         """
-        b, k = self.b, left
+        b = self.b
         i, j = (k + 1) % 3, (k + 2) % 3
         x, y, z = (self.axis_column(origin, target, m) for m in (i, j, k))
         half = sp.Rational(1, 2)

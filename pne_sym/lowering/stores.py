@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 import sympy as sp
@@ -20,7 +21,7 @@ def stores(lowering: Lowering, output: Output) -> list[Store]:
     components = _components(lowering, output)
     b.keep(components.values())
     found = []
-    for (i, row), (j, column) in _pairs(output):
+    for (i, row), (j, column) in product(output.rows, output.columns or ((0, None),)):
         atom = components[i, j]
         if (output.symmetric and i > j) or atom == 0:
             continue  # arrays start at zero
@@ -56,15 +57,8 @@ def _places(output: Output, row: int, column: Any) -> Iterator[tuple[Any, Any]]:
         yield _place(column, legs[1], output), _place(row, legs[0], output)
 
 
-def _pairs(output: Output) -> list[tuple[tuple[int, int], tuple[int, Any]]]:
-    columns: Sequence[tuple[int, Any]] = output.columns or ((0, None),)
-    return [(row, column) for row in output.rows for column in columns]
-
-
 def _place(position: Any, per_leg: tuple[int, ...], output: Output) -> Any:
     """Index in an array, a table over the legs, or None for an array with one index."""
-    if position is None:
-        return None
-    if not output.leg_type or not per_leg:
+    if position is None or not output.leg_type or not per_leg:
         return position
     return tuple(position + k for k in per_leg)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+import sympy as sp
+
 from pne_sym.lowering.algebra import negative
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.statements import Atom
@@ -23,6 +25,9 @@ def triple(make: Callable[[int], _T]) -> tuple[_T, _T, _T]:
 def matrix(make: Callable[[int, int], Atom]) -> Matrix:
     """What is made for each entry, row by row."""
     return triple(lambda i: triple(lambda j: make(i, j)))
+
+
+IDENTITY = matrix(lambda i, j: sp.Integer(int(i == j)))
 
 
 def transposed(m: Matrix) -> Matrix:

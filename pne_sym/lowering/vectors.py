@@ -25,7 +25,7 @@ def _add(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     plain, duals = _split_duals(of, expr.args)
     parts = [of.vector(term, frame) for term in plain]
     for basis, weights in duals:
-        parts.append(_combination(of, basis, weights, frame))
+        parts.append(_force(of, basis, of.bases.wrench(basis, weights), frame))
     return summed(of, parts, hint)
 
 
@@ -111,17 +111,14 @@ def _total(of: Lowering, expr: Any, frame: str, hint: str) -> Triple:
     return found
 
 
-def _combination(
-    of: Lowering, basis: ReciprocalBasis, weights: Sequence[Any], frame: str
-) -> Triple:
-    """Force part of sum g_j (w_j; m_j)."""
-    x, y, z, *_ = of.bases.wrench(basis, weights)
-    return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
-
-
 def single(of: Lowering, basis: ReciprocalBasis, k: int, frame: str) -> Triple:
     """Force part of reciprocal wrench k."""
-    x, y, z, *_ = of.bases.single(basis, k)
+    return _force(of, basis, of.bases.single(basis, k), frame)
+
+
+def _force(of: Lowering, basis: ReciprocalBasis, wrench: Sequence[Atom], frame: str) -> Triple:
+    """Force part of a wrench of the basis."""
+    x, y, z, *_ = wrench
     return of.rotation.vector((x, y, z), of.bases.frame(basis), frame)
 
 

@@ -19,13 +19,18 @@ class Algorithm:
         self._made = Counter[str]()
 
     def run(self, function: str, program: Program, *wanted: str) -> list[Value]:
-        """Run a function of the program; returns some of its arrays."""
+        """Run a function of the program; returns some of its arrays, those that it has."""
+        values = self.run_all(function, program)
+        return [values[a] for a in wanted if a in values]
+
+    def run_all(self, function: str, program: Program) -> dict[str, Value]:
+        """Run a function of the program; returns its arrays by name."""
         arrays = program.functions[function].arrays
         values = {a: Value(f"{a}_of_{function}", program.shapes[a]) for a in arrays}
         self.steps.append(Run(function, tuple(values.values())))
         if "rotor_roots" in values:
             values |= self._with_rotors(program, values)
-        return [values[a] for a in wanted]
+        return values
 
     def _with_rotors(self, program: Program, values: dict[str, Value]) -> dict[str, Value]:
         """M, Z and the required force with coupled rotors, of those that are there."""

@@ -18,6 +18,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from pne_sym.program.ir import Assignment, Block, Check, Function, Program, Store
+from pne_sym.program.slices import columns, flat_places
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -80,7 +81,7 @@ def prepare(program: Program, given: Mapping[str, Array]) -> dict[str, Array]:
     """
     values = {n: np.atleast_1d(np.asarray(v, dtype=float))[:, None] for n, v in given.items()}
     values = {n: v[0] if np.ndim(given[n]) == 0 else v for n, v in values.items()}
-    legs = _leg_counts(program)
+    legs = program.leg_counts
     with np.errstate(all="ignore"):
         for block in program.prepare:
             _assign(block.assignments, values)
@@ -119,12 +120,12 @@ class _Run:
         vectors: Mapping[str, Array],
     ) -> None:
         self.f = function
-        self.legs = _leg_counts(program)
+        self.legs = program.leg_counts
         self.inputs = {v: np.asarray(vectors[v], dtype=float) for v in function.inputs}
         self.states = next(iter(self.inputs.values())).shape[0] if self.inputs else 1
         self.values = {n: prepared[n] for n in function.shared}
         self.values |= {n: prepared[n] for names in function.per_leg.values() for n in names}
-        self.flat = {a: np.zeros((self.states, *program.shapes[a])) for a in function.arrays}
+        self.outputs = {a: np.zeros((self.states, *program.shapes[a])) for a in function.arrays}
         self.failures: list[Failure] = []
 
     def evaluation(self) -> Evaluation:
@@ -140,29 +141,29 @@ class _Run:
             for block in f.blocks:
                 self._block(block)
         status = self._status()
-        for array in self.flat.values():
+        for array in self.outputs.values():
             array[status != Status.OK] = np.nan
-        return Evaluation(self.flat, status, self.values, tuple(self.failures))
+        return Evaluation(self.outputs, status, self.values, tuple(self.failures))
 
     def _block(self, block: Block) -> None:
         _assign(block.assignments, self.values)
         self._check(block.checks, block.leg_type)
         for s in block.sums:
-            terms = self._over_legs(value_of(s.expr, self.values), block.leg_type)
-            self.values[s.target.name] = np.sum(terms, axis=0)
+            self.values[s.target.name] = np.sum(self._over_legs(s.expr, block.leg_type), axis=0)
         for store in block.stores:
             self._store(store, block.leg_type)
 
-    def _over_legs(self, value: Array, leg_type: str) -> Array:
-        return np.broadcast_to(value, (self.legs[leg_type], self.states))
+    def _over_legs(self, expr: Any, leg_type: str) -> Array:
+        """Values (legs, states); one row where they are of no leg."""
+        return np.broadcast_to(
+            value_of(expr, self.values), (self.legs.get(leg_type, 1), self.states)
+        )
 
     def _store(self, store: Store, leg_type: str) -> None:
-        value, flat = value_of(store.value, self.values), self.flat[store.array]
-        if not leg_type:
-            flat[_place(store, 0)] = value
-            return
-        for leg, row in enumerate(self._over_legs(value, leg_type)):
-            flat[_place(store, leg)] = row
+        array, values = self.outputs[store.array], self._over_legs(store.value, leg_type)
+        places = flat_places(store, columns(array.shape[1:]), len(values))
+        flat = array.reshape(self.states, math.prod(array.shape[1:]))  # the same memory
+        flat[:, places] = values.T
 
     def _check(self, checks: Iterable[Check], leg_type: str) -> None:
         shape = (self.legs[leg_type], self.states) if leg_type else (self.states,)
@@ -182,7 +183,7 @@ class _Run:
     def _status(self) -> NDArray[np.int_]:
         """The first cause that holds: input, reach, singular, then what is not finite."""
         status = np.full(self.states, int(Status.OK))
-        for array in self.flat.values():
+        for array in self.outputs.values():
             own = tuple(range(1, array.ndim))
             status[~np.isfinite(array).all(axis=own)] = Status.INVALID
         for cause in (Status.SINGULAR, Status.UNREACHABLE, Status.INVALID):
@@ -193,16 +194,6 @@ class _Run:
         for entries in self.inputs.values():
             status[~np.isfinite(entries).all(axis=1)] = Status.INVALID
         return status
-
-
-def _place(store: Store, leg: int) -> tuple[slice | int, ...]:
-    """Index of an entry in an array over states, for one leg."""
-    places = (store.row,) if store.column is None else (store.row, store.column)
-    return slice(None), *(i[leg] if isinstance(i, tuple) else i for i in places)
-
-
-def _leg_counts(program: Program) -> dict[str, int]:
-    return dict(program.leg_counts)
 
 
 def _assign(assignments: Iterable[Assignment], values: dict[str, Array]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from operator import add
 from typing import Any
 
 import sympy as sp
@@ -213,17 +214,11 @@ class Counts:
         return ", ".join(f"{n} {kind}" for kind, n in vars(self).items())
 
     def __add__(self, other: Counts) -> Counts:
-        return Counts(
-            self.mul + other.mul,
-            self.add + other.add,
-            self.div + other.div,
-            self.sqrt + other.sqrt,
-            self.trig + other.trig,
-        )
+        return Counts(*map(add, vars(self).values(), vars(other).values()))
 
     def times(self, n: int) -> Counts:
         """n times these operations."""
-        return Counts(n * self.mul, n * self.add, n * self.div, n * self.sqrt, n * self.trig)
+        return Counts(*(n * own for own in vars(self).values()))
 
 
 @dataclass(frozen=True)
