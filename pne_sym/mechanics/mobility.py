@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import leg_residual
 from pne_sym.model.errors import SpecError, SpecWarning
-from pne_sym.model.kinematics import TASK_SPACES, pose_at
+from pne_sym.model.kinematics import TASK_SPACES
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Manipulator
 
@@ -238,14 +237,11 @@ def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[in
 
 def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array]]:
     """A leg's closure by rates of all its joints, of those not extra, of the extra ones, of X."""
-    m = manipulator
-    loops = Loops.of(m)
-    pose = pose_at(m.space, m.home.X, m.fixed_centre)
-    twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
-    for leg, s in zip(m.legs, loops.slices(), strict=True):
-        _, by_q, by_twist = leg_residual(leg, q[s], pose)
+    loops, home = Loops.of(manipulator), manipulator.home
+    found = loops.closures(np.array(home.X), np.array(home.q))
+    for (_, by_q, by_twist), s in zip(found, loops.slices(), strict=True):
         extra = loops.extra[s]
-        yield by_q, by_q[:, ~extra], by_q[:, extra], by_twist[:, twist]
+        yield by_q, by_q[:, ~extra], by_q[:, extra], by_twist
 
 
 def _cases(
