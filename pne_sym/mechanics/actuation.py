@@ -20,7 +20,6 @@ import numpy as np
 from pne_sym.derivation import Actuation
 from pne_sym.mechanics.mobility import Mobility, mobility, motions_at_home, rank_of
 from pne_sym.model.closure import unreachable
-from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, rotation_about
 from pne_sym.model.loops import Loops, all_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Space, Vector3
@@ -194,8 +193,7 @@ def check_dependence(m: Manipulator) -> None:
         found = elsewhere(m, rng)
         moved = found is not None and _way(m, found) > _LEAST
         if not moved or found is None or mobility(found).dofs != home.dofs:
-            raise SpecError(
-                m.name,
+            raise m.fault(
                 "legs",
                 f"overconstrained: of the {home.constraints} constraints that the legs put on the "
                 f"platform, {home.overconstrained} follow from the others at home, but not beyond "
