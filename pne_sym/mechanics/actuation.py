@@ -19,9 +19,8 @@ import numpy as np
 
 from pne_sym.derivation import Actuation
 from pne_sym.mechanics.mobility import Mobility, mobility, motions_at_home, rank_of
-from pne_sym.model.closure import leg_residual, unreachable
-from pne_sym.model.errors import SpecError
-from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
+from pne_sym.model.closure import unreachable
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, rotation_about
 from pne_sym.model.loops import Loops, all_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Space, Vector3
 from pne_sym.model.rotation import matrix3, vector3
@@ -101,17 +100,16 @@ def _force_rank(m: Manipulator) -> int:
     of choice: any left inverse of the leg's Jacobian will do, so one is drawn.
     """
     loops, rng = Loops.of(m), np.random.default_rng(0)
-    pose, twist = pose_at(m.space, m.home.X, m.fixed_centre), TASK_SPACES[m.space].components
-    q, extras = np.array(m.home.q), np.cumsum([0, *loops.extra])
+    twist, extras = len(TASK_SPACES[m.space].components), np.cumsum([0, *loops.extra])
+    found = loops.closures(np.array(m.home.X), np.array(m.home.q))
     columns = []
-    for leg, s in zip(m.legs, loops.slices(), strict=True):
-        _, by_q, by_twist = leg_residual(leg, q[s], pose)
+    for leg, s, (_, by_q, by_twist) in zip(m.legs, loops.slices(), found, strict=True):
         own = ~loops.extra[s]
-        rates = np.zeros((len(leg.joints), len(twist) + int(extras[-1])))
+        rates = np.zeros((len(leg.joints), twist + int(extras[-1])))
         for j in np.flatnonzero(~own):
-            rates[j, len(twist) + extras[s.start + j]] = 1.0
+            rates[j, twist + extras[s.start + j]] = 1.0
         demand = by_q @ rates
-        demand[:, : len(twist)] += by_twist[:, twist]
+        demand[:, :twist] += by_twist
         idle = unreachable(by_q[:, own])
         choice = np.linalg.pinv(by_q[:, own]) + rng.uniform(-1, 1, (own.sum(), len(idle))) @ idle
         rates[own] = -choice @ demand
@@ -195,8 +193,7 @@ def check_dependence(m: Manipulator) -> None:
         found = elsewhere(m, rng)
         moved = found is not None and _way(m, found) > _LEAST
         if not moved or found is None or mobility(found).dofs != home.dofs:
-            raise SpecError(
-                m.name,
+            raise m.fault(
                 "legs",
                 f"overconstrained: of the {home.constraints} constraints that the legs put on the "
                 f"platform, {home.overconstrained} follow from the others at home, but not beyond "

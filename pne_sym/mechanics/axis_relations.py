@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.derivation import AxisRelation
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 
 def axis_relations(leg_type: LegType) -> Iterator[AxisRelation]:

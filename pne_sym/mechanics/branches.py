@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.leg_displacements import InverseKinematics
+from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.platform_directions import right_angles
-from pne_sym.model.errors import SpecError
-from pne_sym.model.kinematics import Array, at_home, chain_pose, rotation_about
-from pne_sym.model.manipulator import Leg, Manipulator
+from pne_sym.model.kinematics import Array, at_home, chain_pose
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector.evaluate import evaluate
 
 
@@ -25,58 +23,43 @@ def branch_signs(
     Raises:
         SpecError: a root vanishes at home, where two branches meet.
     """
-    rows = []
     pose, displacements = at_home(manipulator)
-    for index in g.leg_type.indices:
-        q = displacements[index]
-        rows.append(_signs_of_leg(manipulator.name, index, q, g, inverse, book, pose.R))
-    return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
+    rows = []
+    for row, index in enumerate(g.leg_type.indices):
+        values = _values_at(g, row, displacements[index], pose.R)
+        rows.append(_signs_of_leg(manipulator, index, values, g, inverse, book))
+    return list(zip(*rows, strict=True))
 
 
 def _signs_of_leg(
-    name: str,
+    manipulator: Manipulator,
     index: int,
-    q: Array,
+    values: dict[str, Any],
     g: LegGeometry,
     inverse: InverseKinematics,
     book: Book,
-    base_R_platform: Array,
 ) -> list[int]:
-    leg = g.leg_type.legs[g.leg_type.indices.index(index)]
-    values = _values_at(leg, q, g, g.leg_type.indices.index(index), base_R_platform)
-    for j in range(1, g.count + 1):
-        values[g.name(f"q_{j}")] = q[j - 1]
-        values[g.name(f"y_{j}_extra")] = q[j - 1]
-    branches = {branch.symbol: branch for branch in inverse.branches}
-    signs: dict[sp.Symbol, int] = {}
-    chapter = book.open_equations()
-    for equation in chapter:
-        for symbol in branches.keys() - signs.keys():
-            if symbol in getattr(equation.rhs, "free_symbols", ()):
-                branch = branches[symbol]
+    signs: dict[Branch, int] = {}
+    for equation in book.open_equations():
+        for branch in inverse.branches:
+            if branch not in signs and branch.symbol in getattr(equation.rhs, "free_symbols", ()):
                 root = evaluate(branch.root, values) / g.arm**branch.power
-                signs[symbol] = _sign(name, index, branch.joint, root)
-                values[symbol.name] = float(signs[symbol])
+                if not np.isfinite(root) or abs(root) < 1e-12:
+                    raise manipulator.fault(
+                        f"legs[{index}].joints[{branch.joint - 1}]",
+                        "two solutions of the inverse kinematics meet at home",
+                        "a home position off that singularity",
+                    )
+                signs[branch] = 1 if root > 0 else -1
+                values[branch.symbol.name] = float(signs[branch])
         if equation.name not in values:
             values[equation.name] = evaluate(equation.rhs, values)
-    return [signs[branch.symbol] for branch in inverse.branches]
+    return [signs[branch] for branch in inverse.branches]
 
 
-def _sign(name: str, index: int, joint: int, root: float) -> int:
-    if not np.isfinite(root) or abs(root) < 1e-12:
-        raise SpecError(
-            name,
-            f"legs[{index}].joints[{joint - 1}]",
-            "two solutions of the inverse kinematics meet at home",
-            "a home position off that singularity",
-        )
-    return 1 if root > 0 else -1
-
-
-def _values_at(
-    leg: Leg, q: Array, g: LegGeometry, row: int, base_R_platform: Array
-) -> dict[str, Any]:
-    """All given vectors of a leg at displacements q, in leg axes (base point at the origin)."""
+def _values_at(g: LegGeometry, row: int, q: Array, base_R_platform: Array) -> dict[str, Any]:
+    """All that is given of a leg at displacements q, in leg axes (base point at the origin)."""
+    leg = g.leg_type.legs[row]
     chain = chain_pose(leg, q)
     spec = chain.rotations
     # Axes as their joints leave them: rotation by x about e maps e to itself.
@@ -94,28 +77,25 @@ def _values_at(
         values[link.name] = spec[-1] @ in_link
         values[platform.name] = leg_R_platform @ in_platform
     values[g.name("size")] = 1.0
-    _frame_vectors(values, leg, q, g, spec, row)
+    for j, displacement in enumerate(q, 1):
+        values[g.name(f"q_{j}")] = values[g.name(f"y_{j}_extra")] = displacement
+        if g.turns(j):
+            _frame_vectors(values, g, j, row, spec)
     return values
 
 
 def _frame_vectors(
-    values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry, spec: tuple[Array, ...], row: int
+    values: dict[str, Any], g: LegGeometry, j: int, row: int, spec: tuple[Array, ...]
 ) -> None:
-    """Reference directions, canonical axes, cosines and sines of the joints."""
-    for j in range(1, g.count + 1):
-        if not g.turns(j):
-            continue
-        axes = spec[j] @ g.canonical[j][row]
-        x_axis, e = axes[:, 0], axes[:, 2]
-        cosine, sine = g.zero_angle[j][row]
-        before = spec[j] @ rotation_about(
-            leg.joints[j - 1].axis, -leg.joints[j - 1].turn * q[j - 1]
-        )
-        zero = before @ g.canonical[j][row][:, 0]
-        reference = cosine * zero - sine * np.cross(e, zero)
-        values[g.name(f"ref_{j}")] = reference
-        values[g.name(f"across_{j}")] = np.cross(e, reference)
-        values[g.name(f"link_x_{j}")] = x_axis
-        values[g.name(f"link_y_{j}")] = axes[:, 1]
-        values[g.name(f"c_{j}")] = float(reference @ x_axis)
-        values[g.name(f"s_{j}")] = float(e @ np.cross(reference, x_axis))
+    """Reference direction, canonical axes, cosine and sine of a joint that turns."""
+    axes = spec[j] @ g.canonical[j][row]
+    x_axis, e = axes[:, 0], axes[:, 2]
+    cosine, sine = g.zero_angle[j][row]
+    zero = spec[j - 1] @ g.canonical[j][row][:, 0]
+    reference = cosine * zero - sine * np.cross(e, zero)
+    values[g.name(f"ref_{j}")] = reference
+    values[g.name(f"across_{j}")] = np.cross(e, reference)
+    values[g.name(f"link_x_{j}")] = x_axis
+    values[g.name(f"link_y_{j}")] = axes[:, 1]
+    values[g.name(f"c_{j}")] = float(reference @ x_axis)
+    values[g.name(f"s_{j}")] = float(e @ np.cross(reference, x_axis))

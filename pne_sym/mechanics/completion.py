@@ -11,10 +11,11 @@ platform cannot turn, a force through the fixed centre.  They constrain nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import combinations, product
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -35,6 +36,7 @@ from pne_sym.model.manipulator import Manipulator, Space
 _PURE = 1e-6  # relative size of what counts as zero
 _BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
 _SAMPLES, _REACH, _NEWTON = 4, 0.3, 12  # other poses of a leg: how many, how far, how exact
+_Choice = TypeVar("_Choice", bound=tuple[Any, ...])
 
 
 class Kind(StrEnum):
@@ -119,17 +121,24 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
     else:
         pure = max(_rank(s.constraints) - _rank(s.constraints[:3]) for s in home)
         choices = product(combinations(slides, missing - pure), combinations(angles, pure))
-    best = 0.0
-    chosen: tuple[Auxiliary, ...] = ()
-    for first, second in choices:
-        columns = (_columns(s, (*first, *second)) for s in home)
-        quality = min(float(np.linalg.svd(own)[1][-1]) for own in columns)
-        if quality > _BETTER * best:
-            best, chosen = quality, (*first, *second)
+    wanted = ((*first, *second) for first, second in choices)
+    chosen = best_conditioned(wanted, lambda choice: (_columns(s, choice) for s in home))
     return tuple(
         replace(a, of_force=_has_force(home, chosen, k), acts=k < missing - idle)
         for k, a in enumerate(chosen)
     )
+
+
+def best_conditioned(
+    choices: Iterable[_Choice], matrices: Callable[[_Choice], Iterable[Array]]
+) -> _Choice | tuple[()]:
+    """The choice whose worst matrix is conditioned best; the first of equally good ones."""
+    best, chosen = 0.0, ()
+    for choice in choices:
+        quality = min(float(np.linalg.svd(m, compute_uv=False)[-1]) for m in matrices(choice))
+        if quality > _BETTER * best:
+            best, chosen = quality, choice
+    return chosen
 
 
 def _idle(manipulator: Manipulator, g: LegGeometry) -> int:

@@ -26,7 +26,6 @@ from pne_sym.mechanics.platform_dynamics import PlatformWriter
 from pne_sym.mechanics.platform_motion import introduce_platform
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import leg_types
-from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import ZeroVector
@@ -46,7 +45,7 @@ def derive(manipulator: Manipulator) -> Derivation:
     except NameTakenError as error:
         problem = f"two quantities would be called '{error.name}'"
         expected = "another name for a leg type, a leg or a joint"
-        raise SpecError(manipulator.name, "legs", problem, expected) from error
+        raise manipulator.fault("legs", problem, expected) from error
 
 
 def _derive(book: Book, manipulator: Manipulator) -> Derivation:

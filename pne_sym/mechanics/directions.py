@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.mechanics.structure import TOLERANCE
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 AXES = np.eye(3)
 """Coordinate directions, by rows."""

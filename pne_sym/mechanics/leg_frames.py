@@ -10,12 +10,12 @@ offset) that is not parallel to z.  A turn by the joint's angle leads from the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame
 from pne_sym.mechanics.directions import AXES, is_exact, pattern_of, unit
@@ -24,9 +24,8 @@ from pne_sym.mechanics.leg_parameters import LegParameters, offset_of
 from pne_sym.mechanics.platform_directions import PlatformDirections
 from pne_sym.mechanics.structure import TOLERANCE, LegType
 from pne_sym.mechanics.terms import Writer, glossary
+from pne_sym.model.kinematics import Array
 from pne_sym.vector import Cross, Dot, ZeroVector, norm
-
-Array = NDArray[np.float64]
 
 _TERMS = glossary(r"""
 e_#           | \mathbf e_{#}   | given
@@ -94,11 +93,9 @@ class _Frames:
 
     def frames(self) -> None:
         turning = [j for j in range(1, self.g.count + 1) if self.g.turns(j)]
-        first = turning[0] if turning else None
-        self._base_group(first)
+        self._base_group(turning)
         for j in turning:
-            previous = self.g.group[j - 1]
-            self._turn_frame(j, previous)
+            self._turn_frame(j, self.g.group[j - 1])
         for j in range(1, self.g.count + 1):
             self._give_axis(j)
         self._note_straight_ends()
@@ -146,29 +143,20 @@ class _Frames:
                 continue
             x = values - along[:, None] * z_values
             x /= np.linalg.norm(x, axis=1)[:, None]
-            exact = all(c.is_Integer for c in components) and all(c.is_Integer for c in z)
-            if exact and np.all(along == 0):
-                return components, x, True
-            return components, x, False
+            exact = all(c.is_Integer for c in (*components, *z)) and bool(np.all(along == 0))
+            return components, x, exact
         raise AssertionError("no direction is free of the joint's axis")
 
-    def _base_group(self, first: int | None) -> None:
-        if first is None:
-            spec = self.g.frame("spec", 0)
-            self.book.frames.append(Frame(self.g.frame("axes", 0), spec, unit(AXES.ravel())))
-            self.c[0] = np.tile(AXES, (self.type.count, 1, 1))
-            return
-        z = self.spec[first]
-        z_values = self._axes_of(first)
-        matrix, vectors = self._frame_of(0, z, z_values)
-        self.c[0] = matrix
-        pattern = pattern_of(matrix)
-        self.book.frames.append(
-            Frame(self.g.frame("axes", 0), self.g.frame("spec", 0), pattern, axes=vectors)
-        )
+    def _base_group(self, turning: Sequence[int]) -> None:
+        self.c[0], vectors = np.tile(AXES, (self.type.count, 1, 1)), None
+        if turning:
+            self.c[0], vectors = self._frame_of(0, turning[0])
+        name, spec = self.g.frame("axes", 0), self.g.frame("spec", 0)
+        self.book.frames.append(Frame(name, spec, pattern_of(self.c[0]), axes=vectors))
 
-    def _frame_of(self, group: int, z: Any, z_values: Array) -> tuple[Array, Any]:
-        """Canonical axes as columns in spec axes, and as vectors where not exact."""
+    def _frame_of(self, group: int, j: int) -> tuple[Array, Any]:
+        """Canonical axes, z along axis j: columns in spec axes, and vectors where not exact."""
+        z, z_values = self.spec[j], self._axes_of(j)
         components, x_values, exact = self._canonical(group, z, z_values)
         self.choice[group] = components
         y_values = np.cross(z_values, x_values)
@@ -195,9 +183,8 @@ class _Frames:
 
     def _turn_frame(self, j: int, previous: int) -> None:
         """Frames of the group that joint j opens: turn frame, canonical frame, spec frame."""
-        z, z_values = self.spec[j], self._axes_of(j)
-        c_previous = self.c[previous]
-        matrix, vectors = self._frame_of(j, z, z_values)
+        z_values, c_previous = self._axes_of(j), self.c[previous]
+        matrix, vectors = self._frame_of(j, j)
         self.c[j] = matrix
         local = np.einsum("lji,lj->li", c_previous, z_values)  # axis j in the previous frame
         reference, tilt = _reference(local)
@@ -219,19 +206,10 @@ class _Frames:
             self.g.zero_turn[j] = (sp.Integer(round(cosine[0])), sp.Integer(round(sine[0])))
         else:
             self._general_turn(j, previous, turn, tilt)
-        angle = (
-            sp.Symbol(self.g.name(f"c_{j}"), real=True),
-            sp.Symbol(self.g.name(f"s_{j}"), real=True),
-        )
-        frames.append(Frame(axes_name, turn_name, angle=angle))
-        frames.append(
-            Frame(
-                self.g.frame("spec", j),
-                axes_name,
-                pattern_of(np.transpose(matrix, (0, 2, 1))),
-                rows=vectors,
-            )
-        )
+        names = self.g.name(f"c_{j}"), self.g.name(f"s_{j}")
+        frames.append(Frame(axes_name, turn_name, angle=sp.symbols(names, real=True)))
+        spec_in_axes = pattern_of(np.transpose(matrix, (0, 2, 1)))
+        frames.append(Frame(self.g.frame("spec", j), axes_name, spec_in_axes, rows=vectors))
 
     def _general_turn(self, j: int, previous: int, turn: Array, tilt: int) -> None:
         """Turn frame and zero angle from live axes."""

@@ -13,15 +13,14 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.mechanics.directions import pattern_of
 from pne_sym.mechanics.structure import TOLERANCE, LegType
 from pne_sym.model.joint_kinds import JointKind
+from pne_sym.model.kinematics import Array
 from pne_sym.vector import Vector, VectorSymbol, ZeroVector
 from pne_sym.vector.nodes import scale
 
-Array = NDArray[np.float64]
 _NUMBER = re.compile(r"(?<=_)\d+(?=_|$)")
 
 

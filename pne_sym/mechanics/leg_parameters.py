@@ -8,7 +8,6 @@ from typing import Any, Unpack
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Rule
 from pne_sym.mechanics.axis_relations import axis_relations
@@ -17,11 +16,9 @@ from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.live import END, LEG, Demands, Place, note, of_legs
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.kinematics import chain_pose
+from pne_sym.model.kinematics import Array, chain_pose
 from pne_sym.model.manipulator import Vector3
 from pne_sym.vector import ZeroVector
-
-Array = NDArray[np.float64]
 
 _TERMS = glossary(r"""
 b             | \mathbf b       | given @base

@@ -11,15 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from pne_sym.model.closure import leg_residual
-from pne_sym.model.errors import SpecError, SpecWarning
-from pne_sym.model.kinematics import TASK_SPACES, pose_at
+from pne_sym.model.errors import SpecWarning
+from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Manipulator
-
-Array = npt.NDArray[np.float64]
 
 DEPENDENT = 1e-8
 """Singular values below it, of the largest, are zeros: home is closed to 1e-12."""
@@ -153,12 +149,9 @@ def check_solvable(manipulator: Manipulator) -> None:
     _check_extra(manipulator)
     found = mobility(manipulator)
     if not found.actuators:
-        raise SpecError(
-            manipulator.name, "legs", "no joint is actuated", "actuated = true for some joint"
-        )
+        raise manipulator.fault("legs", "no joint is actuated", "actuated = true for some joint")
     if not found.dofs:
-        raise SpecError(
-            manipulator.name,
+        raise manipulator.fault(
             "legs",
             "the legs hold the platform: nothing moves at home",
             "at least one degree of freedom",
@@ -179,8 +172,7 @@ def _check_extra(manipulator: Manipulator) -> None:
                 f"joints[{j}]" for j, joint in enumerate(manipulator.legs[index].joints)
                 if joint.extra
             ]  # fmt: skip
-            raise SpecError(
-                manipulator.name,
+            raise manipulator.fault(
                 f"legs[{index}]",
                 f"of the joints marked extra, {held} cannot move: how the platform is guided holds "
                 "them",
@@ -238,14 +230,11 @@ def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[in
 
 def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array]]:
     """A leg's closure by rates of all its joints, of those not extra, of the extra ones, of X."""
-    m = manipulator
-    loops = Loops.of(m)
-    pose = pose_at(m.space, m.home.X, m.fixed_centre)
-    twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
-    for leg, s in zip(m.legs, loops.slices(), strict=True):
-        _, by_q, by_twist = leg_residual(leg, q[s], pose)
+    loops, home = Loops.of(manipulator), manipulator.home
+    found = loops.closures(np.array(home.X), np.array(home.q))
+    for (_, by_q, by_twist), s in zip(found, loops.slices(), strict=True):
         extra = loops.extra[s]
-        yield by_q, by_q[:, ~extra], by_q[:, extra], by_twist[:, twist]
+        yield by_q, by_q[:, ~extra], by_q[:, extra], by_twist
 
 
 def _cases(

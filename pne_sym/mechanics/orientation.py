@@ -11,12 +11,11 @@ from itertools import combinations
 
 import numpy as np
 
-from pne_sym.mechanics.completion import Kind, leg_states
+from pne_sym.mechanics.completion import Kind, best_conditioned, leg_states
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.model.kinematics import Array
 from pne_sym.model.manipulator import Manipulator
 
-_BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
 _SAME = 1e-6  # directions nearer than this to a space are in it
 
 
@@ -46,13 +45,9 @@ def orientation_rows(
     legs = [[s.dofs for s in leg_states(manipulator, g, k)] for k in range(g.leg_type.count)]
     if not all(_is_same_span(found) for found in legs):
         return ()
-    best, chosen = 0.0, tuple[int, ...]()
-    for choice in combinations(rows, joints):
-        chosen_rows = (found[0][list(choice)] for found in legs)
-        quality = min(float(np.linalg.svd(m, compute_uv=False)[-1]) for m in chosen_rows)
-        if quality > _BETTER * best:
-            best, chosen = quality, choice
-    return chosen
+    return best_conditioned(
+        combinations(rows, joints), lambda choice: (found[0][list(choice)] for found in legs)
+    )
 
 
 def orientation_signs(

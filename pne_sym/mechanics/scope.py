@@ -7,7 +7,6 @@ import numpy as np
 from pne_sym.mechanics.scales import home_lengths
 from pne_sym.mechanics.structure import LegType
 from pne_sym.model.closure import leg_residual
-from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import TaskSpace, at_home
 from pne_sym.model.manipulator import Manipulator
 
@@ -26,16 +25,14 @@ def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -
     moments = 0 if space.planar else leg.platform_joint.kind.moments
     most = (2 if space.planar else 3) + moments
     if len(dofs) > most:
-        raise SpecError(
-            manipulator.name,
+        raise manipulator.fault(
             f"legs[{index}].joints",
             f"{len(dofs)} degrees of freedom where the platform joint leaves {most} to be "
             "determined",
             f"at most {most} joints, or the surplus ones marked extra = true",
         )
     if not dofs:
-        raise SpecError(
-            manipulator.name,
+        raise manipulator.fault(
             f"legs[{index}].joints",
             "no joint left to solve for",
             "at least one joint that is not extra",
@@ -55,8 +52,7 @@ def _check_independent(
         sizes = np.linalg.norm(columns, axis=0)
         values = np.linalg.svd(columns / np.where(sizes > 0, sizes, 1.0), compute_uv=False)
         if np.min(sizes) < _DEPENDENT * np.max(sizes) or values[-1] < _DEPENDENT:
-            raise SpecError(
-                manipulator.name,
+            raise manipulator.fault(
                 f"legs[{index}]",
                 "the leg is singular at home: its degrees of freedom move the platform joint along "
                 "dependent directions",

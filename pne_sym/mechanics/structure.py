@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pne_sym.model.kinematics import Array
 from pne_sym.model.leg_types import TOLERANCE, is_coordinate, named_structures
 from pne_sym.model.manipulator import Joint, Leg, Manipulator
 
 __all__ = ["TOLERANCE", "LegType", "architecture_of", "is_coordinate", "leg_types"]
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

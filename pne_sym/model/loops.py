@@ -80,21 +80,24 @@ class Loops:
         ends = np.cumsum([0, *(len(leg.joints) for leg in self.legs)]).tolist()
         return [slice(a, b) for a, b in pairwise(ends)]
 
+    def closures(self, X: Array, q: Array) -> list[tuple[Array, Array, Array]]:
+        """Each leg's residual, and its Jacobians by its displacements and by the free twist."""
+        pose = pose_at(self.space, X.tolist(), self.centre)
+        twist, pairs = (
+            TASK_SPACES[self.space].components,
+            zip(self.legs, self.slices(), strict=True),
+        )
+        found = (leg_residual(leg, q[s], pose) for leg, s in pairs)
+        return [(residual, by_q, by_twist[:, twist]) for residual, by_q, by_twist in found]
+
     def residuals(self, X: Array, q: Array) -> list[float]:
         """The largest residual of each leg."""
-        pose = pose_at(self.space, X.tolist(), self.centre)
-        residuals = (
-            leg_residual(leg, q[s], pose)[0]
-            for leg, s in zip(self.legs, self.slices(), strict=True)
-        )
-        return [float(np.abs(residual).max()) for residual in residuals]
+        return [float(np.abs(residual).max()) for residual, _, _ in self.closures(X, q)]
 
     def widest(self, X: Array, q: Array) -> LoopResidual:
         """The largest residual: a length, or an angle between axes."""
         leg = int(np.argmax(self.residuals(X, q)))
-        name = self.legs[leg].name
-        pose = pose_at(self.space, X.tolist(), self.centre)
-        residual = np.abs(leg_residual(self.legs[leg], q[self.slices()[leg]], pose)[0])
+        name, residual = self.legs[leg].name, np.abs(self.closures(X, q)[leg][0])
         points, axes = residual[:3], residual[3:]
         if not axes.max(initial=0.0) > points.max():
             return LoopResidual(leg, f"{points.max():.3g} m", name=name)
@@ -113,21 +116,15 @@ def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
 
 def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
     """All legs closed together, moving the pose by what the legs cannot reach."""
-    size, free = loops.size, ~loops.extra
-    twist = TASK_SPACES[loops.space].components
-    slices = loops.slices()
-
-    def residuals(x: Array) -> list[tuple[Array, Array, Array]]:
-        pose = pose_at(loops.space, x[:size].tolist(), loops.centre)
-        pairs = zip(loops.legs, slices, strict=True)
-        found = [(leg_residual(leg, x[size:][s], pose), s) for leg, s in pairs]
-        return [(r, by_q * free[s], by_twist[:, twist]) for (r, by_q, by_twist), s in found]
+    size, free = loops.size, [~loops.extra[s] for s in loops.slices()]
+    twist = len(TASK_SPACES[loops.space].components)
 
     def residual(x: Array) -> Array:
-        return np.concatenate([r for r, _, _ in residuals(x)])
+        return np.concatenate([r for r, _, _ in loops.closures(x[:size], x[size:])])
 
     def step(x: Array) -> Array:
-        legs = residuals(x)
+        found = zip(loops.closures(x[:size], x[size:]), free, strict=True)
+        legs = [(r, by_q * own, by_twist) for (r, by_q, by_twist), own in found]
         out = [unreachable(by_q) for _, by_q, _ in legs]
         platform = least_norm(
             np.vstack([n @ by_twist for n, (_, _, by_twist) in zip(out, legs, strict=True)]),
@@ -139,8 +136,8 @@ def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
         return np.concatenate([platform, *joints])
 
     def move(x: Array, step: Array) -> Array:
-        pose = displaced(loops.space, x[:size], step[: len(twist)])
-        return np.concatenate([pose, x[size:] + step[len(twist) :]])
+        pose = displaced(loops.space, x[:size], step[:twist])
+        return np.concatenate([pose, x[size:] + step[twist:]])
 
     x = solve(residual, step, move, np.concatenate([X[:size], q]))
     return np.concatenate([x[:size], X[size:]]), x[size:]

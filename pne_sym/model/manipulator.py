@@ -15,6 +15,7 @@ import enum
 from dataclasses import dataclass
 
 from pne_sym.model.effects import Actuator, Friction, Limits, Spring
+from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import JointKind
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.platform_kinds.interface import Closure, Direction
@@ -236,6 +237,10 @@ class Manipulator:
     payload: Body | None = None
     moving_base: bool = False
     coupling: tuple[tuple[float, ...], ...] | None = None
+
+    def fault(self, where: str, problem: str, expected: str) -> SpecError:
+        """The error for what cannot be used of it: see `SpecError`."""
+        return SpecError(self.name, where, problem, expected)
 
     @property
     def joints(self) -> list[Joint]:

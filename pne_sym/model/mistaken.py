@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from itertools import product
+from collections.abc import Collection
+from dataclasses import replace
+from itertools import compress, product
 
 import numpy as np
 
@@ -18,39 +19,16 @@ _NEAR = 1e-2
 """Residual, over the largest length, with which loops count as closed but for rounding."""
 
 
-@dataclass(frozen=True)
-class _Mistake:
-    """What may be in millimetres or degrees."""
-
-    base_point: bool
-    platform_point: bool
-    links: bool
-    position: bool
-    slides: bool
-    hinges: bool
-    phi: bool
-
-    def told(self) -> str:
-        """In words."""
-        lengths = [
-            name
-            for name, wrong in (
-                ("base_point", self.base_point),
-                ("platform_point", self.platform_point),
-                ("offset", self.links),
-                ("the position in home.X", self.position),
-                ("ways in home.q", self.slides),
-            )
-            if wrong
-        ]
-        angles = [
-            name
-            for name, wrong in (("angles in home.q", self.hinges), ("phi in home.X", self.phi))
-            if wrong
-        ]
-        parts = [f"{', '.join(lengths)} in mm"] * bool(lengths)
-        parts += [f"{' and '.join(angles)} in degrees"] * bool(angles)
-        return " and ".join(parts)
+_LENGTHS = _BASE, _PLATFORM, _LINKS, _POSITION, _SLIDES = (
+    "base_point",
+    "platform_point",
+    "offset",
+    "the position in home.X",
+    "ways in home.q",
+)
+"""What may be in millimetres."""
+_ANGLES = _HINGES, _PHI = "angles in home.q", "phi in home.X"
+"""What may be in degrees."""
 
 
 def mistaken_unit(loops: Loops, X: Array, q: Array | None) -> str:
@@ -61,28 +39,35 @@ def mistaken_unit(loops: Loops, X: Array, q: Array | None) -> str:
         X: pose and extra coordinates.
         q: displacements; None: any.
     """
-    planar = loops.space is Space.PLANAR
-    choices = [(False, True)] * 4 + [(False, bool(q is not None))] * 2 + [(False, planar)]
-    cases = [_Mistake(*case) for case in dict.fromkeys(product(*choices))]
-    cases.sort(key=lambda case: sum(vars(case).values()))
-    for case in cases[1:]:
+    absent = {_SLIDES, _HINGES} if q is None else set()
+    absent |= set() if loops.space is Space.PLANAR else {_PHI}
+    names = [name for name in (*_LENGTHS, *_ANGLES) if name not in absent]
+    cases = [tuple(compress(names, wrong)) for wrong in product((False, True), repeat=len(names))]
+    for case in sorted(cases, key=len)[1:]:
         if _closes(loops, X, q, case):
-            return f"; with {case.told()} they would close, but units are m and rad"
+            return f"; with {_told(case)} they would close, but units are m and rad"
     return ""
 
 
-def _closes(loops: Loops, X: Array, q: Array | None, case: _Mistake) -> bool:
+def _told(case: Collection[str]) -> str:
+    """What is in other units, in words."""
+    lengths, angles = ([name for name in of if name in case] for of in (_LENGTHS, _ANGLES))
+    parts = [f"{', '.join(lengths)} in mm"] * bool(lengths)
+    parts += [f"{' and '.join(angles)} in degrees"] * bool(angles)
+    return " and ".join(parts)
+
+
+def _closes(loops: Loops, X: Array, q: Array | None, case: Collection[str]) -> bool:
     legs = [_corrected(leg, case) for leg in loops.legs]
     X = X.copy()
     if TASK_SPACES[loops.space].translates:
-        X[: 2 if TASK_SPACES[loops.space].planar else 3] *= _MILLI if case.position else 1.0
-    if case.phi:
+        X[: 2 if TASK_SPACES[loops.space].planar else 3] *= _MILLI if _POSITION in case else 1.0
+    if _PHI in case:
         X[2] = np.radians(X[2])
     if q is not None:
         slides = np.array([not joint.kind.is_angle for joint in loops.joints])
-        hinges = ~slides
-        q = q * np.where(slides & case.slides, _MILLI, 1.0)
-        q = q * np.where(hinges & case.hinges, np.pi / 180.0, 1.0)
+        q = q * np.where(slides & (_SLIDES in case), _MILLI, 1.0)
+        q = q * np.where(~slides & (_HINGES in case), np.pi / 180.0, 1.0)
     pose = pose_at(loops.space, X.tolist(), loops.centre)
     for leg, s in zip(legs, loops.slices(), strict=True):
         given = np.zeros(len(leg.joints)) if q is None else q[s]
@@ -92,14 +77,14 @@ def _closes(loops: Loops, X: Array, q: Array | None, case: _Mistake) -> bool:
     return True
 
 
-def _corrected(leg: Leg, case: _Mistake) -> Leg:
+def _corrected(leg: Leg, case: Collection[str]) -> Leg:
     """The leg with its lengths in metres."""
-    links = _MILLI if case.links else 1.0
+    links = _MILLI if _LINKS in case else 1.0
     end = leg.platform_joint
     return replace(
         leg,
-        base_point=_scaled(leg.base_point, _MILLI if case.base_point else 1.0),
-        platform_point=_scaled(leg.platform_point, _MILLI if case.platform_point else 1.0),
+        base_point=_scaled(leg.base_point, _MILLI if _BASE in case else 1.0),
+        platform_point=_scaled(leg.platform_point, _MILLI if _PLATFORM in case else 1.0),
         joints=tuple(replace(joint, offset=_scaled(joint.offset, links)) for joint in leg.joints),
         platform_joint=replace(end, offset=_scaled(end.offset, links)),
     )

@@ -8,6 +8,7 @@ say (closed loops, unit axes, physical inertias) only the reader checks.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from pne_sym.model import body, home, joints, legs, names, read_effects, reader, symbols, values
@@ -89,14 +90,10 @@ def _specification() -> Schema:
             "additionalProperties": {"type": "string"},
         },
     }
-    table = _table(
-        "specification", reader.FIELDS, fields, ("name", "space", "platform", "legs", "home")
-    )
-    spherical: Schema = {
-        "properties": {"space": {"const": str(Space.SPHERICAL)}},
-        "required": ["space"],
-    }
-    centre: Schema = {"required": ["fixed_centre"]}
+    required = "name", "space", "platform", "legs", "home"
+    table = _table("specification", reader.FIELDS, fields, required)
+    space, centre = {"space": {"const": str(Space.SPHERICAL)}}, {"required": ["fixed_centre"]}
+    spherical = {"properties": space, "required": ["space"]}
     return {**table, "if": spherical, "then": centre, "else": {"not": centre}}
 
 
@@ -112,7 +109,7 @@ def _body() -> Schema:
                 _rows(3),
                 _rows(2),
                 _POSITIVE,
-                {"type": "object", "properties": components, "additionalProperties": False},
+                _object(components),
             ]
         },
         "inertia_about": {"enum": ["centre_of_mass", "origin"]},
@@ -158,20 +155,15 @@ def _effects() -> Schema:
     number, least = _ref("number"), _POSITIVE
     some: Schema = {"type": "number", "minimum": values.SNAP, "maximum": values.LARGEST}
     scale: Schema = {"coulomb": ["velocity_scale"], "velocity_scale": ["coulomb"]}
-    friction = _table(
-        "friction",
-        read_effects.FRICTION,
-        {"viscous": least, "coulomb": least, "velocity_scale": some},
-        (),
-    )
+    speeds = {"viscous": least, "coulomb": least, "velocity_scale": some}
+    friction = _table("friction", read_effects.FRICTION, speeds, ())
     gear: Schema = {**_NUMBER, "not": {"const": 0}}
     actuator = {"rotor_inertia": least, "gear_ratio": gear}
+    spring = {"stiffness": least, "rest": number}
     limits = {"displacement": _list_of(number, 2), "rate": some, "effort": some}
     return {
         "friction": {**friction, "dependentRequired": scale, "minProperties": 1},
-        "spring": _table(
-            "spring", read_effects.SPRING, {"stiffness": least, "rest": number}, ("stiffness",)
-        ),
+        "spring": _table("spring", read_effects.SPRING, spring, ("stiffness",)),
         "actuator": _table("actuator", read_effects.ACTUATOR, actuator, read_effects.ACTUATOR),
         "limits": {**_table("limits", read_effects.LIMITS, limits, ()), "minProperties": 1},
     }
@@ -251,15 +243,7 @@ def _home() -> Schema:
 
 def _rotation() -> Schema:
     angles = _list_of(_ref("number"), 3)
-    tables = [
-        {
-            "type": "object",
-            "properties": {name: {**angles, "description": MEANING["rotation"][name]}},
-            "required": [name],
-            "additionalProperties": False,
-        }
-        for name in ("rpy", "rpy_deg")
-    ]
+    tables = [_table("rotation", (name,), {name: angles}, (name,)) for name in ("rpy", "rpy_deg")]
     return {"anyOf": [_ref("rows"), *tables]}
 
 
@@ -272,12 +256,13 @@ def _table(
         KeyError: a field of the reader is missing here, or has no meaning in words.
     """
     described = {name: {**fields[name], "description": MEANING[table][name]} for name in known}
-    return {
-        "type": "object",
-        "properties": described,
-        "required": list(required),
-        "additionalProperties": False,
-    }
+    return _object(described, {"required": list(required)})
+
+
+def _object(fields: Mapping[str, object], rules: Schema | None = None) -> Schema:
+    """A table of these fields and no others."""
+    known = {"type": "object", "properties": fields}
+    return {**known, **(rules or {}), "additionalProperties": False}
 
 
 def _override(known: tuple[str, ...], fields: dict[str, Schema]) -> Schema:
@@ -285,11 +270,7 @@ def _override(known: tuple[str, ...], fields: dict[str, Schema]) -> Schema:
     loose = {**fields, "link": {"type": "object"}} if "link" in known else dict(fields)
     for name in set(known) & set(read_effects.FIELDS):
         loose[name] = {"anyOf": [fields[name], {"type": "object"}]}
-    return {
-        "type": "object",
-        "properties": {name: loose[name] for name in known},
-        "additionalProperties": False,
-    }
+    return _object({name: loose[name] for name in known})
 
 
 def _joints(item: Schema) -> Schema:
@@ -298,10 +279,8 @@ def _joints(item: Schema) -> Schema:
 
 def _when(kinds: list[WrittenJoint], then: Schema) -> Schema:
     letters = [kind.letter for kind in kinds]
-    return {
-        "if": {"properties": {"kind": {"enum": letters}}, "required": ["kind"]},
-        "then": then,
-    }
+    own = {"properties": {"kind": {"enum": letters}}, "required": ["kind"]}
+    return {"if": own, "then": then}
 
 
 def _rows(size: int) -> Schema:

@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 
 @dataclass(frozen=True)
@@ -51,34 +52,22 @@ def _arrays(expr: Applied | str) -> list[str]:
     return [name for operand in expr.operands for name in _arrays(operand)]
 
 
-def transposed(a: Applied | str) -> Applied:
-    """The transpose of a matrix."""
-    return Applied("transposed", (a,))
+def _applied(operation: str, *operands: Applied | str) -> Applied:
+    return Applied(operation, operands)
 
 
-def product(a: Applied | str, b: Applied | str) -> Applied:
-    """A product of matrices."""
-    return Applied("product", (a, b))
-
-
-def times(a: Applied | str, x: Applied | str) -> Applied:
-    """A matrix times a vector."""
-    return Applied("times", (a, x))
-
-
-def scale_rows(d: Applied | str, x: Applied | str) -> Applied:
-    """diag(d) x, of a vector x."""
-    return Applied("multiply", (d, x))
-
-
-def scale_columns(a: Applied | str, d: Applied | str) -> Applied:
-    """A diag(d), of a matrix."""
-    return Applied("scale_columns", (a, d))
-
-
-def solution(a: Applied | str, b: Applied | str) -> Applied:
-    """The x with a x = b."""
-    return Applied("solve", (a, b))
+transposed = partial(_applied, "transposed")
+"""The transpose of a matrix."""
+product = partial(_applied, "product")
+"""A product of matrices."""
+times = partial(_applied, "times")
+"""A matrix times a vector."""
+scale_rows = partial(_applied, "multiply")
+"""diag(d) x, of d and a vector x."""
+scale_columns = partial(_applied, "scale_columns")
+"""A diag(d), of a matrix A and d."""
+solution = partial(_applied, "solve")
+"""The x with a x = b, of a and b."""
 
 
 def written(expr: Applied | str, names: dict[str, str], forms: dict[str, str]) -> str:

@@ -6,7 +6,7 @@ opened by Rule I and Rule II, and each use of a rule is recorded.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -91,9 +91,7 @@ def linear_form(
     Reference: section 2.3, Rules I and II, Eq. 4.
     """
     collector = _Collector(tuple(unknowns), dict(known or {}))
-    coefficients, remainder = (
-        collector.vector(expr) if isinstance(expr, Vector) else collector.scalar(sp.sympify(expr))
-    )
+    coefficients, remainder = collector.collect(sp.sympify(expr))
     return LinearForm(coefficients, remainder, tuple(collector.steps))
 
 
@@ -102,35 +100,46 @@ class _Collector:
         self.unknowns = unknowns
         self.known = known
         self.steps: list[RuleApplication] = []
+        self.rules: dict[type, Callable[..., tuple[Coefficients, Any]]] = {
+            VectorAdd: self._sum,
+            VectorScale: self._scaled,
+            VectorLegSum: self._over_legs,
+            Cross: self._cross,
+            Apply: self._applied,
+            sp.Add: self._sum,
+            sp.Mul: self._multiple,
+            Dot: self._product,
+        }
 
     def depends(self, expr: Any) -> bool:
         if expr in self.unknowns or expr in self.known:
             return True
         return any(self.depends(arg) for arg in getattr(expr, "args", ()))
 
-    def vector(self, expr: Any) -> tuple[Coefficients, Any]:
+    def collect(self, expr: Any) -> tuple[Coefficients, Any]:
+        """Coefficients by unknown, and remainder."""
         if expr in self.known:
             form = self.known[expr]
             return dict(form.coefficients), form.remainder
         if expr in self.unknowns:
-            return {expr: Identity}, ZeroVector
+            if isinstance(expr, Vector):
+                return {expr: Identity}, ZeroVector
+            return {expr: sp.S.One}, sp.S.Zero
         if not self.depends(expr):
             return {}, expr
-        if isinstance(expr, VectorAdd):
-            return self._sum([self.vector(term) for term in expr.args])
-        if isinstance(expr, VectorScale):
-            return self._scaled(*expr.args)
-        if isinstance(expr, Cross):
-            return self._cross(*expr.args)
-        if isinstance(expr, VectorLegSum):
-            return self._over_legs(*expr.args)
-        if isinstance(expr, Apply) and not self.depends(expr.args[0]):
-            tensor = expr.args[0]
-            coefficients, remainder = self.vector(expr.args[1])
-            return {x: tensor @ c for x, c in coefficients.items()}, tensor @ remainder
-        raise NotLinearError(f"not linear in the unknowns: {expr}")
+        if type(expr) not in self.rules:
+            raise NotLinearError(f"not linear in the unknowns: {expr}")
+        return self.rules[type(expr)](*expr.args)
 
-    def _sum(self, parts: list[tuple[Coefficients, Any]]) -> tuple[Coefficients, Any]:
+    def _moving(self, factors: Sequence[Any]) -> Any:
+        """The one factor that holds unknowns."""
+        moving = [factor for factor in factors if self.depends(factor)]
+        if len(moving) > 1:
+            raise NotLinearError("a product of two factors that both hold unknowns")
+        return moving[0]
+
+    def _sum(self, *terms: Any) -> tuple[Coefficients, Any]:
+        parts = [self.collect(term) for term in terms]
         total: Coefficients = {}
         for coefficients, _ in parts:
             for x, c in coefficients.items():
@@ -140,10 +149,16 @@ class _Collector:
             return total, vector_sum(remainders)
         return total, sp.Add(*remainders)
 
+    def _applied(self, tensor: Any, vector: Any) -> tuple[Coefficients, Any]:
+        if self.depends(tensor):
+            raise NotLinearError(f"not linear in the unknowns: {tensor @ vector}")
+        coefficients, remainder = self.collect(vector)
+        return {x: tensor @ c for x, c in coefficients.items()}, tensor @ remainder
+
     def _over_legs(self, body: Any, leg_type: Any) -> tuple[Coefficients, Any]:
         """A sum over legs, of unknowns that are the same for all of them."""
         first = len(self.steps)
-        coefficients, remainder = self.vector(body)
+        coefficients, remainder = self.collect(body)
         self.steps[first:] = [
             RuleApplication(s.rule, *(sum_over_legs(x, leg_type.name) for x in (s.before, s.after)))
             for s in self.steps[first:]
@@ -153,11 +168,9 @@ class _Collector:
 
     def _scaled(self, factor: Any, vector: Any) -> tuple[Coefficients, Any]:
         if not self.depends(factor):
-            coefficients, remainder = self.vector(vector)
+            coefficients, remainder = self.collect(vector)
             return {x: c * factor for x, c in coefficients.items()}, remainder * factor
-        if self.depends(vector):
-            raise NotLinearError("a product of two factors that both hold unknowns")
-        scalar_coefficients, remainder = self.scalar(factor)
+        scalar_coefficients, remainder = self.collect(self._moving((factor, vector)))
         result: Coefficients = {}
         for x, c in scalar_coefficients.items():
             if isinstance(x, VectorSymbol):
@@ -168,10 +181,8 @@ class _Collector:
         return result, vector * remainder
 
     def _cross(self, a: Any, b: Any) -> tuple[Coefficients, Any]:
-        if self.depends(a) and self.depends(b):
-            raise NotLinearError("a cross product of two factors that both hold unknowns")
-        fixed, moving, sign = (a, b, 1) if self.depends(b) else (b, a, -1)
-        coefficients, remainder = self.vector(moving)
+        fixed, moving, sign = (a, b, 1) if self._moving((a, b)) == b else (b, a, -1)
+        coefficients, remainder = self.collect(moving)
         result: Coefficients = {}
         for x, c in coefficients.items():
             if not isinstance(x, VectorSymbol):
@@ -182,33 +193,16 @@ class _Collector:
             self.steps.append(RuleApplication(RULE_II, before, result[x] @ x))
         return result, Cross(fixed, remainder) * sign
 
-    def scalar(self, expr: Any) -> tuple[Coefficients, Any]:
-        if expr in self.known:
-            form = self.known[expr]
-            return dict(form.coefficients), form.remainder
-        if expr in self.unknowns:
-            return {expr: sp.S.One}, sp.S.Zero
-        if not self.depends(expr):
-            return {}, expr
-        if isinstance(expr, sp.Add):
-            return self._sum([self.scalar(term) for term in expr.args])
-        if isinstance(expr, sp.Mul):
-            dependent = [arg for arg in expr.args if self.depends(arg)]
-            if len(dependent) > 1:
-                raise NotLinearError("a product of two factors that both hold unknowns")
-            factor = expr / dependent[0]
-            coefficients, remainder = self.scalar(dependent[0])
-            return {x: c * factor for x, c in coefficients.items()}, factor * remainder
-        if isinstance(expr, Dot):
-            return self._product(expr)
-        raise NotLinearError(f"not linear in the unknowns: {expr}")
+    def _multiple(self, *factors: Any) -> tuple[Coefficients, Any]:
+        moving = self._moving(factors)
+        factor = sp.Mul(*factors) / moving
+        coefficients, remainder = self.collect(moving)
+        return {x: c * factor for x, c in coefficients.items()}, factor * remainder
 
-    def _product(self, expr: Any) -> tuple[Coefficients, Any]:
-        a, b = expr.args
-        if self.depends(a) and self.depends(b):
-            raise NotLinearError("a product of two vectors that both hold unknowns")
-        fixed, moving = (a, b) if self.depends(b) else (b, a)
-        coefficients, remainder = self.vector(moving)
+    def _product(self, a: Any, b: Any) -> tuple[Coefficients, Any]:
+        moving = self._moving((a, b))
+        coefficients, remainder = self.collect(moving)
+        fixed = a if moving == b else b
         return {x: _dot(fixed, c, x) for x, c in coefficients.items()}, Dot(fixed, remainder)
 
 
