@@ -31,7 +31,7 @@ from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
 from pne_sym.program.ir import Closure, Function
 
-_SUPPORT = ("linear", "operations", "bounds", "rotations", "iteration")
+_SUPPORT = ("linear", "rectangular", "operations", "bounds", "rotations", "iteration")
 """Templates of plain C, of which a module gets what it needs."""
 
 
