@@ -11,10 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.program.evaluate import Status, prepare
+from pne_sym.program.evaluate import Array, Status, prepare
 from pne_sym.program.interpret import Interpreter
 from pne_sym.program.public import Apply, Argument, PublicFunction
 
@@ -26,8 +25,6 @@ SMALLEST = 1e-3
 """Pivots are larger, in rows made of size one: far from what counts as singular in every type."""
 _CLEARLY = 2  # a row further down is better by this factor, as where rows are chosen
 _FOURS = 16  # no more powers of 4 between rows and one: products of entries stay far from underflow
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

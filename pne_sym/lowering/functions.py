@@ -78,7 +78,7 @@ def program_of(
     means = meaning.by_name(statements, names)
     stores = [rewritten(replace(s, equation=ids.get(s.value, "")), names) for s in stores]
     stores = sorted((replace(s, array=s.value.name) for s in stores), key=lambda s: s.array)
-    prepare = _blocks(renamed(names, statements), stores, leg_types, parameters=True)
+    prepare = _blocks(renamed(names, statements), stores, leg_types)
     listed = tuple((store.array, store.stage.leg_type) for store in stores)
     reserved = outside | {name for name, _ in listed} | _input_names(derivation)
     names |= numbered(run, reserved, lambda s, made: meaning.stem(s, ChainMap(made, names)))
@@ -198,22 +198,15 @@ def _closure_of(assignments: list[Assignment], wanted: set[Any]) -> set[Any]:
 
 
 def _blocks(
-    statements: list[Statement],
-    ends: Sequence[End],
-    leg_types: list[str],
-    *,
-    parameters: bool = False,
+    statements: list[Statement], ends: Sequence[End], leg_types: list[str]
 ) -> tuple[Block, ...]:
-    kinds = (
-        (Kind.PARAMETER, Kind.PARAMETER_LEG, Kind.PARAMETER_TOTAL)
-        if parameters
-        else (Kind.STATE, Kind.STATE_LEG, Kind.TOTAL)
-    )
-    stages = [Stage(kinds[0]), *(Stage(kinds[1], t) for t in leg_types), Stage(kinds[2])]
     blocks = []
-    for stage in stages:
+    of_legs = (Kind.PARAMETER_LEG, Kind.STATE_LEG)
+    for stage in (Stage(k, t) for k in Kind for t in (leg_types if k in of_legs else [""])):
         own = [s for s in statements if s.stage == stage and not s.total_of]
-        totals = [s for s in statements if s.total_of and s.total_of == stage.leg_type]
+        totals = [
+            s for s in statements if (s.total_of, s.stage) == (stage.leg_type, stage.after_sum())
+        ]
         here = [end for end in ends if end.stage == stage]
         blocks.append(
             Block(

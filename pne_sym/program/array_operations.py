@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pne_sym.program.evaluate import Status
-from pne_sym.program.operation import Array, Compute, Operation, Operations, finite
+from pne_sym.program.evaluate import Array, Status
+from pne_sym.program.operation import Compute, Operation, Operations, finite
 
 TINY = 1e-9
 """A distance of points from their centroid below this fraction of the legs' size is none."""

@@ -14,11 +14,8 @@ in comparisons the second ones count first.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pne_sym.program.linear import PIVOT
-
-Array = NDArray[np.float64]
+from pne_sym.program.linear import PIVOT, Array
 
 TURNS = 20
 """Steps of the search, for every bounded force: each is one bound more or one less."""

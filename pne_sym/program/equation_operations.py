@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pne_sym.program import distribution, linear
-from pne_sym.program.evaluate import Status
-from pne_sym.program.operation import Array, Operations, blanked, finite
+from pne_sym.program.evaluate import Array, Status
+from pne_sym.program.operation import Operations, blanked, finite
 
 OPERATIONS = Operations()
 

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.program.evaluate import Status
+from pne_sym.program.evaluate import Array, Status
 
-Array = NDArray[np.float64]
 Shape = tuple[int, ...]
 Compute = Callable[..., Array | tuple[Array, ...]]
 

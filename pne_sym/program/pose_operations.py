@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.program.operation import Array, Operations, blanked, finite
+from pne_sym.program.evaluate import Array
+from pne_sym.program.operation import Operations, blanked, finite
 
 ORTHONORMAL = 1e-6
 """By how much the products of a rotation matrix's rows may differ from those of unit vectors."""
