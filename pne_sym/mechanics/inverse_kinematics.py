@@ -9,8 +9,6 @@ closed form by this route, and the reason is told.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
@@ -18,7 +16,7 @@ import sympy as sp
 from pne_sym.derivation import Book, Condition, FailureStatus, Law
 from pne_sym.mechanics.directions import AXES, unit
 from pne_sym.mechanics.invariants import Invariants
-from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
+from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics, Resolved
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, Vector, ZeroVector, norm
@@ -138,23 +136,6 @@ disc_#:slide     | \Delta_{#}            | LOOP_CLOSURE
 _NOTHING_LEFT = "no direction or distance is left unchanged by the joints beyond it"
 
 
-@dataclass(frozen=True)
-class _Resolved:
-    """The vector to the connection point in the canonical axes that a joint opens.
-
-    Attributes:
-        group: number of that joint.
-        parts: along x, y, z.
-    """
-
-    group: int
-    parts: tuple[Any, Any, Any]
-
-    def along(self, direction: Sequence[Any]) -> Any:
-        """Component along a direction given in these axes."""
-        return sp.Add(*(d * part for d, part in zip(direction, self.parts, strict=True)))
-
-
 class _Solver:
     def __init__(
         self, book: Book, g: LegGeometry, normal: Vector | None, *, constrained: bool
@@ -170,7 +151,7 @@ class _Solver:
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
         self.x: dict[int, Vector] = {}
-        self.resolved: _Resolved | None = None
+        self.resolved: Resolved | None = None
         self.swings: list[bool] = []
         self.axes: dict[tuple[str, int], tuple[Vector, Vector]] = {}
 
@@ -219,7 +200,7 @@ class _Solver:
 
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
-        g, e = self.g, self.g.e[j]
+        e = self.g.e[j]
         u_n, u_m, along_axis = self.invariants.pattern(j, method, u)
         fixed = value == 0 and along_axis == 0 and {abs(u_n or 0), abs(u_m or 0)} == {0, 1}
         self.swings.append(fixed and method == "linear")
@@ -241,7 +222,7 @@ class _Solver:
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
         parts = x_n / length2, x_m / length2, axial
-        self.resolved = _Resolved(j, parts)
+        self.resolved = Resolved(j, parts)
         if self.invariants.goes_on(j):
             return x
         n, m = self._axes(_LINK_AXES, j)
