@@ -9,15 +9,14 @@ closed form by this route, and the reason is told.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, FailureStatus, Law
+from pne_sym.mechanics.directions import AXES, unit
 from pne_sym.mechanics.invariants import Invariants
-from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics
+from pne_sym.mechanics.leg_displacements import Branch, InverseKinematics, Resolved
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, Vector, ZeroVector, norm
@@ -44,7 +43,7 @@ def invert(
     solver = _Solver(book, g, normal, constrained=constrained)
     for j in range(1, g.count + 1):
         if g.is_extra(j):  # known before all others, which may lie before it in the chain
-            solver._given(j, x)
+            solver._given(j)
     for j in range(1, g.count + 1):
         x = solver.joint(j, x)
     return InverseKinematics(
@@ -65,16 +64,15 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
     solver = _Solver(book, g, None, constrained=False)
     for j in range(1, g.count + 1):
         if g.is_extra(j):
-            solver._given(j, ZeroVector)
-            continue
-        solver.q[j] = solver.eq.note("q_#:iterated", j)
-        solver.methods[j] = "numeric"
-        if g.turns(j):
+            solver._given(j)
+        else:
+            solver._iterated(j)
             solver._angle_of_displacement(j)
     return InverseKinematics(solver.q, solver.methods, reasons, [], {})
 
 
-_ALONG_X, _ALONG_Y = (tuple(map(sp.Integer, axis)) for axis in ((1, 0, 0), (0, 1, 0)))
+_TURN_AXES, _LINK_AXES = ("ref_#", "across_#"), ("link_x_#", "link_y_#")
+"""Axes x and y before a joint's turn, fixed in the link before it; those that its link carries."""
 _TERMS = glossary(r"""
 x_#              | \mathbf S_{#}         | GEOMETRY @before
     from the origin of joint # to the connection point
@@ -135,47 +133,27 @@ px_#:slide       | S^e_{#}               | LOOP_CLOSURE
 disc_#:slide     | \Delta_{#}            | LOOP_CLOSURE
     discriminant of the distance equation
 """)
-
-
-@dataclass(frozen=True)
-class _Resolved:
-    """The vector to the connection point in the canonical axes that a joint opens.
-
-    Attributes:
-        group: number of that joint.
-        parts: along x, y, z.
-    """
-
-    group: int
-    parts: tuple[Any, Any, Any]
-
-    def along(self, direction: Sequence[Any]) -> Any:
-        """Component along a direction given in these axes."""
-        return sp.Add(*(d * part for d, part in zip(direction, self.parts, strict=True)))
+_NOTHING_LEFT = "no direction or distance is left unchanged by the joints beyond it"
 
 
 class _Solver:
     def __init__(
         self, book: Book, g: LegGeometry, normal: Vector | None, *, constrained: bool
     ) -> None:
-        self.book = book
         self.g = g
         self.normal = normal
         self.constrained = constrained
         self.eq = Writer(book, g, _TERMS)
-        self.q: dict[int, Any] = {
-            j: sp.Symbol(g.name(f"y_{j}_extra"), real=True)
-            for j in range(1, g.count + 1)
-            if g.is_extra(j)
-        }
+        extras = (j for j in range(1, g.count + 1) if g.is_extra(j))
+        self.q: dict[int, Any] = {j: sp.Symbol(g.name(f"y_{j}_extra"), real=True) for j in extras}
         self.invariants = Invariants(g, self.q)
         self.methods: dict[int, str] = {}
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
         self.x: dict[int, Vector] = {}
-        self.resolved: _Resolved | None = None
+        self.resolved: Resolved | None = None
         self.swings: list[bool] = []
-        self.link_axes: dict[int, tuple[Vector, Vector]] = {}
+        self.axes: dict[tuple[str, int], tuple[Vector, Vector]] = {}
 
     def joint(self, j: int, x: Vector) -> Vector:
         """Find joint j; returns the vector from joint j+1's origin to the connection point."""
@@ -187,8 +165,7 @@ class _Solver:
             self._orient(j)
         elif g.acts_as_slide(j) or (g.slides(j) and not self.invariants.later(j)):
             self._slide(j, x)
-            if g.turns(j):
-                self._angle_of_displacement(j)
+            self._angle_of_displacement(j)
         else:
             x = self._turn(j, x)
         before, x = x, x - self.q[j] * g.slide(j) - g.offset[j + 1]
@@ -213,52 +190,42 @@ class _Solver:
             value = self.eq.named("Kd_#", squared, j)
         return self._projection(j, x, u, value, method)
 
-    def _turn_axes(self, j: int) -> tuple[Vector, Vector]:
-        """x and y axes of the turn frame of joint j (fixed in link j-1)."""
-        x = self.eq.give("ref_#", _ALONG_X, j, j - 1)
-        return x, self.eq.give("across_#", _ALONG_Y, j, j - 1)
-
-    def _link_axes(self, j: int) -> tuple[Vector, Vector]:
-        """x and y axes of the canonical frame that joint j opens."""
-        if j not in self.link_axes:
-            x = self.eq.give("link_x_#", _ALONG_X, j)
-            self.link_axes[j] = x, self.eq.give("link_y_#", _ALONG_Y, j)
-        return self.link_axes[j]
+    def _axes(self, stems: tuple[str, str], j: int) -> tuple[Vector, Vector]:
+        """Axes x and y at joint j, by their names in the table."""
+        if (stems[0], j) not in self.axes:
+            x, y = map(unit, AXES[:2])
+            given = self.eq.give(stems[0], x, j, j - 1), self.eq.give(stems[1], y, j, j - 1)
+            self.axes[stems[0], j] = given
+        return self.axes[stems[0], j]
 
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
-        g, e = self.g, self.g.e[j]
+        e = self.g.e[j]
         u_n, u_m, along_axis = self.invariants.pattern(j, method, u)
         fixed = value == 0 and along_axis == 0 and {abs(u_n or 0), abs(u_m or 0)} == {0, 1}
         self.swings.append(fixed and method == "linear")
         A, B, axial = self._in_turning_plane(j, x, named=not fixed)
         if u_n is None:
-            u_n = self._constant_of_link("un_#", j, Dot(u, self._link_axes(j)[0]))
+            u_n = self._constant_of_link("un_#", j, Dot(u, self._axes(_LINK_AXES, j)[0]))
         if u_m is None:
-            u_m = self._constant_of_link("um_#", j, Dot(u, self._link_axes(j)[1]))
+            u_m = self._constant_of_link("um_#", j, Dot(u, self._axes(_LINK_AXES, j)[1]))
         K, N = u_n * A + u_m * B, u_n * B - u_m * A
         if not fixed:
             K, N = self.eq.named("Kc_#", K, j), self.eq.named("Ks_#", N, j)
         along = sp.S.Zero if along_axis == 0 else Dot(u, e) * axial
         C = self.eq.named("Kr_#", value - along, j)
         # The axis across x is one of the links beyond, unless extra coordinates turn these.
-        across = fixed and Dot(e, x) == axial and not any(map(g.is_extra, range(j, g.count + 1)))
-        root = self._turned(
-            j,
-            K,
-            N,
-            C,
-            method,
-            reaches=fixed and u_m == 1 and self.invariants.reaches(j),
-            length=norm(Cross(e, x)) if across else None,
-        )
+        across = fixed and Dot(e, x) == axial and not self._extras_from(j)
+        lengths = (norm(Cross(e, x)),) if across else ()
+        reaches = fixed and u_m == 1 and self.invariants.reaches(j)
+        root = self._turned(j, K, N, C, method, reaches=reaches, lengths=lengths)
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._constant_of_link("uu_#", j, u_n**2 + u_m**2)
         parts = x_n / length2, x_m / length2, axial
-        self.resolved = _Resolved(j, parts)
+        self.resolved = Resolved(j, parts)
         if self.invariants.goes_on(j):
             return x
-        n, m = self._link_axes(j)
+        n, m = self._axes(_LINK_AXES, j)
         resolved: Vector = self.eq("xi_#", parts[0] * n + parts[1] * m + axial * e, j)
         return resolved
 
@@ -271,7 +238,7 @@ class _Solver:
         if known is not None and known.group == g.group[j - 1] and j in g.turn_axes:
             A, B, axial = (known.along(g.turn_axes[j][k::3]) for k in range(3))
         else:
-            reference, across = self._turn_axes(j)
+            reference, across = self._axes(_TURN_AXES, j)
             A, B, axial = Dot(reference, x), Dot(across, x), Dot(g.e[j], x)
         if named:
             A, B = self.eq.named("px_#", A, j), self.eq.named("py_#", B, j)
@@ -285,10 +252,14 @@ class _Solver:
         C: Any,
         method: str,
         *,
-        reaches: bool = False,
-        length: Any = None,
+        reaches: bool,
+        lengths: tuple[Any, ...],
     ) -> Any:
-        """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
+        """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch.
+
+        Where the right-hand side is zero that is the length across the axis; if the leg
+        `reaches` its end along it, the displacement of the next joint.
+        """
         g = self.g
         power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
         regular = Condition(FailureStatus.SINGULAR, K * K + N * N, g.size ** (2 * power), 2)
@@ -296,9 +267,13 @@ class _Solver:
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
-            forms = () if length is None else (sigma * length,)
-            value = sigma * sp.sqrt(K * K + N * N)
-            root = self._amplitude(j, value, regular, reaches=reaches, forms=forms)
+            value, facts = sigma * sp.sqrt(K * K + N * N), {"conditions": (regular,)}
+            if reaches:
+                self.methods[j + 1] = "direct"
+                root = self.q[j + 1] = self.eq("q_#", value, j + 1, **facts)
+            else:
+                forms = tuple(sigma * length for length in lengths)
+                root = self.eq.named("root_#:amplitude", value, j, forms=forms, **facts)
             self._cosine_sine(j, -N / root, K / root)
             return root
         rho2 = self.eq.named("rho2_#", K * K + N * N, j, conditions=(regular,))
@@ -308,48 +283,37 @@ class _Solver:
         self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
         return root
 
-    def _amplitude(
-        self, j: int, value: Any, regular: Condition, *, reaches: bool, forms: tuple[Any, ...]
-    ) -> Any:
-        """The root where the right-hand side is zero: the length of a leg that extends along it."""
-        if not reaches:
-            return self.eq.named("root_#:amplitude", value, j, conditions=(regular,), forms=forms)
-        self.methods[j + 1] = "direct"
-        self.q[j + 1] = self.eq("q_#", value, j + 1, conditions=(regular,))
-        return self.q[j + 1]
-
     def _constant_of_link(self, stem: str, j: int, rhs: Any) -> Any:
         """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
         if rhs.is_number:
             return rhs
-        beyond = range(j + 1, self.g.count + 1)
-        constant = not any(map(self.g.is_extra, beyond))
-        return self.eq.named(stem, rhs, j, parameter=constant)
+        return self.eq.named(stem, rhs, j, parameter=not self._extras_from(j + 1))
+
+    def _extras_from(self, j: int) -> bool:
+        """Whether joint j or one beyond it is extra."""
+        return any(map(self.g.is_extra, range(j, self.g.count + 1)))
 
     def _cosine_sine(self, j: int, cosine: Any, sine: Any) -> None:
-        c = self.eq("c_#", cosine, j)
-        s = self.eq("s_#", sine, j)
+        c, s = self.eq("c_#", cosine, j), self.eq("s_#", sine, j)
         c0, s0 = self.g.zero_turn[j]
         self.q[j] = self.eq("q_#", sp.atan2(s * c0 - c * s0, c * c0 + s * s0), j)
 
     def _direct(self, j: int, x: Vector) -> Vector:
         """Nothing follows: the tip's offset must turn into x."""
         g = self.g
-        reference, across = self._turn_axes(j)
-        n, m = self._link_axes(j)
+        reference, across = self._axes(_TURN_AXES, j)
+        n, m = self._axes(_LINK_AXES, j)
         tip = self.invariants.beyond(j)
         if tip == ZeroVector:
-            self.reasons[j] = "the connection point lies on the joint's axis"
-            self._numeric(j, self.reasons[j])
+            self._numeric(j, "the connection point lies on the joint's axis")
             return x
         A, B = Dot(reference, x), Dot(across, x)
         along, aside = Dot(tip, n), Dot(tip, m)
         length2 = self._constant_of_link("uu_#", j, along**2 + aside**2)
         self.methods[j] = "direct"
         self.swings.append(False)
-        if not self.constrained:
-            amplitude = length2
-        else:
+        amplitude = length2
+        if self.constrained:
             squared = self.eq.named("rho2_#", (A**2 + B**2) * length2, j)
             regular = Condition(FailureStatus.SINGULAR, squared, g.size**4, 2)
             amplitude = self.eq.named("root_#:nearest", sp.sqrt(squared), j, conditions=(regular,))
@@ -369,16 +333,16 @@ class _Solver:
         self.resolved = None
         self._projection(j, platform, link, sp.S.Zero, "orientation")
 
-    def _given(self, j: int, x: Vector) -> Vector:
+    def _given(self, j: int) -> None:
         """The displacement is a coordinate of its own."""
         self.methods[j] = "given"
         self.eq.note("y_#_extra", j)
-        if self.g.turns(j):
-            self._angle_of_displacement(j)
-        return x
+        self._angle_of_displacement(j)
 
     def _angle_of_displacement(self, j: int) -> None:
-        """Cosine and sine of a turning joint whose displacement is known."""
+        """Cosine and sine of a joint whose displacement is known, if it turns."""
+        if not self.g.turns(j):
+            return
         q, (c0, s0) = self.g.turn(j) * self.q[j], self.g.zero_turn[j]
         self.eq("c_#", sp.cos(q) * c0 - sp.sin(q) * s0, j, law=Law.GEOMETRY)
         self.eq("s_#", sp.sin(q) * c0 + sp.cos(q) * s0, j, law=Law.GEOMETRY)
@@ -409,9 +373,11 @@ class _Solver:
         self.branches.append(Branch(sigma, j, q * advance - along, 1))
         self.q[j] = self.eq("q_#", (along + sigma * sp.sqrt(discriminant)) / advance, j)
 
-    def _numeric(self, j: int, reason: str = "") -> None:
+    def _numeric(self, j: int, reason: str = _NOTHING_LEFT) -> None:
+        self._iterated(j)
+        self.reasons[j] = reason
+
+    def _iterated(self, j: int) -> None:
+        """The displacement is found by iteration on the loop closure."""
         self.methods[j] = "numeric"
         self.q[j] = self.eq.note("q_#:iterated", j)
-        self.reasons[j] = reason or (
-            "no direction or distance is left unchanged by the joints beyond it"
-        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +27,23 @@ class Branch:
     joint: int
     root: Any
     power: int
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """The vector to the connection point in the canonical axes that a joint opens.
+
+    Attributes:
+        group: number of that joint.
+        parts: along x, y, z.
+    """
+
+    group: int
+    parts: tuple[Any, Any, Any]
+
+    def along(self, direction: Sequence[Any]) -> Any:
+        """Component along a direction given in these axes."""
+        return sp.Add(*(d * part for d, part in zip(direction, self.parts, strict=True)))
 
 
 @dataclass(frozen=True)

@@ -185,8 +185,7 @@ def actuation_quality(manipulator: Manipulator) -> float:
 
     The smallest singular value of the actuators' rates over all motions of unit size.
     """
-    closure, _, _ = _closure(manipulator)
-    rates = null_space(closure)
+    rates = motions_at_home(manipulator)
     wanted = np.array([joint.actuated or joint.extra for joint in manipulator.joints], dtype=bool)
     rows = rates[len(TASK_SPACES[manipulator.space].components) :][wanted]
     if rows.shape[0] < rows.shape[1] or not rows.size:

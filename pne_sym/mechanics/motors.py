@@ -15,6 +15,7 @@ from pne_sym.derivation import Book, Law, Output, Rule
 from pne_sym.mechanics.joint_forces import Motor
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.live import note, of_all
+from pne_sym.mechanics.placing import Placer, actuated
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import linear_form
 from pne_sym.vector.arrays import (
@@ -43,26 +44,15 @@ def write_motors(book: Book, manipulator: Manipulator, legs: list[Leg]) -> None:
         book.relations += _relations(has_motors=has_motors)
     if not has_motors and coupling is None:
         return
-    order = [
-        (i, j)
-        for i, leg in enumerate(manipulator.legs)
-        for j, joint in enumerate(leg.joints, 1)
-        if joint.actuated
-    ]
-    for leg in legs:
-        for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
-            if joint.actuated:
-                rows = tuple(order.index((i, j)) for i in leg.g.leg_type.indices)
-                arrays = _coupled(leg, j) if coupling is not None else _alone(leg, j)
-                if not has_motors:
-                    arrays = {
-                        name: arrays[name] for name in ("actuated_rates", "ratios", "per_turn")
-                    }
-                book.outputs += [
-                    Output(array, value, ((0, 0),), (), leg.name, rows)
-                    for array, value in arrays.items()
-                    if value != 0
-                ]
+    for leg, j, rows in Placer.numbered(legs, actuated):
+        arrays = _coupled(leg, j) if coupling is not None else _alone(leg, j)
+        if not has_motors:
+            arrays = {name: arrays[name] for name in ("actuated_rates", "ratios", "per_turn")}
+        book.outputs += [
+            Output(array, value, ((0, 0),), (), leg.name, rows)
+            for array, value in arrays.items()
+            if value != 0
+        ]
 
 
 def _alone(leg: Leg, j: int) -> dict[str, Any]:

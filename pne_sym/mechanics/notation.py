@@ -13,27 +13,19 @@ from typing import Any
 
 from pne_sym.derivation import Derivation, Quantity, Role, full_name, full_names, names_in
 from pne_sym.model.entry import nearest
-from pne_sym.model.errors import SpecError, show
+from pne_sym.model.errors import show
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.symbols import split_symbol
 from pne_sym.vector import TensorSymbol, VectorSymbol
 
 # Quantities whose symbols stand in the report's own sentences and statements.
-_COMMON = frozenset(
-    (
-        Role.POSITION,
-        Role.VELOCITY,
-        Role.ACCELERATION,
-        Role.ANGULAR_VELOCITY,
-        Role.ANGULAR_ACCELERATION,
-        Role.GRAVITY,
-        Role.POINT,
-        Role.POINT_VELOCITY,
-        Role.POINT_ACCELERATION,
-        Role.COLLECTED_ACCELERATION,
-        Role.BIAS,
-    )
-)
+_COMMON = {
+    Role[name]
+    for name in """
+        POSITION VELOCITY ACCELERATION ANGULAR_VELOCITY ANGULAR_ACCELERATION GRAVITY
+        POINT POINT_VELOCITY POINT_ACCELERATION COLLECTED_ACCELERATION BIAS
+    """.split()
+}
 # Symbols that mean the same in every report, though no quantity of a derivation has them.
 TAKEN = (
     r"\mathbf{E} \mathbf{M} \mathbf{Z} \mathbf{H} \mathbf{H}_{k} \mathbf{F} \mathbf{A} \mathbf{T}"
@@ -98,8 +90,7 @@ def with_symbols(
     """
     if not manipulator.symbols:
         return derivation
-    places = _places(derivation)
-    bold = _bold(derivation)
+    places, bold = _places(derivation), _bold(derivation)
     following: dict[str, Symbol] = {}
     own: dict[str, Symbol] = {}
     for key, name, text in _in_all_types(manipulator, derivation, places):
@@ -117,10 +108,9 @@ def with_symbols(
     }
     shared = {frozenset(pair) for pair in equal}
     for name in sorted(changed.keys() & places.keys()):
-        taken = [n for n in places if n in notation and {n, name} not in shared]
-        _refuse_collision(
-            manipulator, name, changed[name], places, {n: notation[n].latex for n in taken}
-        )
+        others = (n for n in places if n in notation and n != name and {n, name} not in shared)
+        taken = {n: notation[n].latex for n in others if _meet(places[n], places[name])}
+        _refuse_collision(manipulator, changed[name], taken)
     return replace(derivation, notation=notation)
 
 
@@ -140,18 +130,13 @@ def _check_name(
 ) -> None:
     where = f"symbols.{key}"
     if name not in known:
-        raise SpecError(
-            manipulator.name,
-            where,
-            f"no quantity {show(key)}{nearest(key, _short(derivation, known))}",
-            "a name that occurs in the derivation",
-        )
+        problem = f"no quantity {show(key)}{nearest(key, _short(derivation, known))}"
+        raise manipulator.fault(where, problem, "a name that occurs in the derivation")
     quantity = derivation.notation[name]
     common = derivation.notation.get(quantity.remainder_of, quantity)
     if common.role in _COMMON:
-        raise SpecError(
-            manipulator.name, where, "its symbol is the same in every report", "no such field"
-        )
+        problem = "its symbol is the same in every report"
+        raise manipulator.fault(where, problem, "no such field")
 
 
 def _short(derivation: Derivation, names: Collection[str]) -> list[str]:
@@ -182,28 +167,22 @@ def _following(
             yield from _itself(derivation, quantity.name, mark, _DERIVATIVES[quantity.role])
 
 
-def _refuse_collision(
-    manipulator: Manipulator,
-    name: str,
-    symbol: Symbol,
-    places: Mapping[str, set[str | None]],
-    taken: Mapping[str, str],
-) -> None:
+def _meet(places: set[str | None], others: set[str | None]) -> bool:
+    """Whether names of these chapters occur in one; those of the platform alone do not count."""
+    return {None} in (places, others) or bool((places & others) - {None})
+
+
+def _refuse_collision(manipulator: Manipulator, symbol: Symbol, taken: Mapping[str, str]) -> None:
     """Refuse a symbol that another quantity of the same chapters has."""
     where, wanted = f"symbols.{symbol.key}", _plain(symbol.latex)
     if wanted in map(_plain, TAKEN):
         problem = f"{symbol.latex} means something in every report"
-        raise SpecError(manipulator.name, where, problem, "another symbol")
+        raise manipulator.fault(where, problem, "another symbol")
     for other, latex in taken.items():
-        if other == name or _plain(latex) != wanted:
-            continue
-        if {None} in (places[other], places[name]) or (places[other] & places[name]) - {None}:
-            raise SpecError(
-                manipulator.name,
-                where,
-                f"{symbol.latex} is the symbol of {other} as well",
-                f"another symbol, or a symbol for {other}, too",
-            )
+        if _plain(latex) == wanted:
+            problem = f"{symbol.latex} is the symbol of {other} as well"
+            expected = f"another symbol, or a symbol for {other}, too"
+            raise manipulator.fault(where, problem, expected)
 
 
 def _plain(latex: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from pne_sym.derivation import Book, Output
@@ -20,18 +20,17 @@ class Placer:
 
     def __init__(self, book: Book, space: TaskSpace, legs: Sequence[Leg]) -> None:
         self.book, self.space, self.legs = book, space, legs
-        joints = [(leg, j) for leg in legs for j in leg.motion.ydd]
-        places = self.numbered([(index, j) for leg, j in joints for index in indices(leg)])
-        start = len(space.components)
-        self.extras: list[tuple[Leg, int, Rows]] = [
-            (leg, j, tuple(start + places[i, j] for i in indices(leg))) for leg, j in joints
-        ]
+        self.extras = self.numbered(legs, lambda leg: leg.motion.ydd, len(space.components))
         """Extra joints with the rows of their coordinates."""
 
     @staticmethod
-    def numbered(keys: Sequence[tuple[int, int]]) -> dict[tuple[int, int], int]:
-        """Places of (leg, number) in the order of legs."""
-        return {key: k for k, key in enumerate(sorted(keys))}
+    def numbered(
+        legs: Sequence[Leg], of: Callable[[Leg], Iterable[int]], start: int = 0
+    ) -> list[tuple[Leg, int, Rows]]:
+        """What legs have, by numbers, with its places: in the order of legs, then of numbers."""
+        keys = sorted((index, k) for leg in legs for index in indices(leg) for k in of(leg))
+        at = {key: place for place, key in enumerate(keys, start)}
+        return [(leg, k, tuple(at[i, k] for i in indices(leg))) for leg in legs for k in of(leg)]
 
     def extras_of(self, leg: Leg) -> list[tuple[int, Rows]]:
         """Extra joints of a leg type."""
@@ -91,3 +90,8 @@ class Placer:
 def indices(leg: Leg) -> tuple[int, ...]:
     """Numbers of the legs of a type."""
     return tuple(leg.g.leg_type.indices)
+
+
+def actuated(leg: Leg) -> list[int]:
+    """Actuated joints of a leg type."""
+    return [j for j, joint in enumerate(leg.g.leg_type.model.joints, 1) if joint.actuated]

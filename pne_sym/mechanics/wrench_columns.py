@@ -12,7 +12,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book
 from pne_sym.mechanics.legs import Leg
-from pne_sym.mechanics.placing import Placer, Rows, indices
+from pne_sym.mechanics.placing import Placer, Rows, actuated
 from pne_sym.mechanics.reciprocal_wrenches import ConstraintWrench
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import Cross, Dot, ZeroVector
@@ -39,25 +39,13 @@ class ColumnWriter:
 
     def write(self, legs: Sequence[Leg]) -> None:
         """Columns of all legs: in the order of legs, in one leg from the base."""
-        actuated = {leg.name: self._actuated(leg) for leg in legs}
-        column = self.put.numbered([(i, j) for leg in legs for i in indices(leg)
-                                    for j in actuated[leg.name]])  # fmt: skip
-        for leg in legs:
-            for j in actuated[leg.name]:
-                self._actuator(leg, j, tuple(column[i, j] for i in indices(leg)))
-        column = self.put.numbered([(i, k) for leg in legs for i in indices(leg)
-                                    for k in range(len(leg.motion.constraints))])  # fmt: skip
-        for leg in legs:
-            for k, constraint in enumerate(leg.motion.constraints):
-                places = tuple(column[i, k] for i in indices(leg))
-                wrench = constraint.force, constraint.moment
-                self._wrench("Hk", leg, wrench, k + 1, places)
-                self._constrained_extras(leg, constraint, places)
-                self._constraint(leg, k + 1, constraint, places)
-
-    @staticmethod
-    def _actuated(leg: Leg) -> list[int]:
-        return [j for j, joint in enumerate(leg.g.leg_type.model.joints, 1) if joint.actuated]
+        for leg, j, places in self.put.numbered(legs, actuated):
+            self._actuator(leg, j, places)
+        for leg, k, places in self.put.numbered(legs, _constraints):
+            constraint = leg.motion.constraints[k]
+            self._wrench("Hk", leg, (constraint.force, constraint.moment), k + 1, places)
+            self._constrained_extras(leg, constraint, places)
+            self._constraint(leg, k + 1, constraint, places)
 
     def _actuator(self, leg: Leg, j: int, places: Rows) -> None:
         """Column of an actuator: the reciprocal wrench of its joint."""
@@ -120,3 +108,8 @@ class ColumnWriter:
         bias = eq("gamma_c#", Dot(normal, rest) + turning, k)
         self.put.leg_scalar("constraint_bias", leg, bias, places)
         self.put.wrench_rows("constraint_direction", leg, (normal, constraint.moment), places)
+
+
+def _constraints(leg: Leg) -> range:
+    """Numbers of the constraints of a leg type."""
+    return range(len(leg.motion.constraints))

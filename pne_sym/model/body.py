@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecWarning
 from pne_sym.model.manipulator import ZERO3, ZERO33, Body, Matrix3, Vector3
 from pne_sym.model.rotation import matrix3
 from pne_sym.model.values import matrix, not_negative, number, numbers, vector
@@ -89,11 +86,9 @@ def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
             _told(smallest, "principal moment"),
         )
     if largest > smallest + middle + rounding:
-        warnings.warn(
-            f"{entry.source}: {entry.where}: principal moments {smallest:.6g}, {middle:.6g}, "
-            f"{largest:.6g} kg m^2 belong to no body: the largest exceeds the sum of the others",
-            SpecWarning,
-            stacklevel=2,
+        entry.warn(
+            f": principal moments {smallest:.6g}, {middle:.6g}, {largest:.6g} kg m^2 belong to no "
+            "body: the largest exceeds the sum of the others"
         )
     return matrix3(0.5 * (array + array.T))
 

@@ -7,10 +7,11 @@ place as the author wrote it, also inside a shared leg type or an override.
 from __future__ import annotations
 
 import difflib
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from pne_sym.model.errors import SpecError, printable, show
+from pne_sym.model.errors import SpecError, SpecWarning, printable, show
 
 MAX_ELEMENTS = 4096
 """Lists and tables beyond it are refused at once, before any work is done on them."""
@@ -35,6 +36,10 @@ class Entry:
     def fault(self, expected: str, problem: str = "") -> SpecError:
         """The error for this value; `problem` defaults to naming the value."""
         return SpecError(self.source, self.where, problem or f"value {show(self.value)}", expected)
+
+    def warn(self, message: str, kind: type[Warning] = SpecWarning) -> None:
+        """Warn of this value, with its place."""
+        warnings.warn(f"{self.source}: {self.where}{message}", kind, stacklevel=3)
 
     def table(self, known: Iterable[str]) -> Table:
         """The fields of a table.

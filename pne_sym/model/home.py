@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import warnings
 
 import numpy as np
 
 from pne_sym.model.assembly import all_closures
 from pne_sym.model.closure import CLOSED
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecNote, SpecWarning
+from pne_sym.model.errors import SpecNote
 from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops, all_closed, legs_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Space, Vector3
@@ -123,26 +122,24 @@ def _found(entry: Entry, loops: Loops, X: Array) -> tuple[Array, Array]:
                 f"{mistaken_unit(loops, X, None)}",
             )
         if moved > TOLERANCE:
-            warnings.warn(
-                f"{entry.source}: {entry.where}.X: the legs restrict the platform; closed by a "
-                f"change of at most {moved:.3g} (m or rad)",
-                SpecWarning,
-                stacklevel=2,
+            entry.warn(
+                ".X: the legs restrict the platform; closed by a change of at most "
+                f"{moved:.3g} (m or rad)"
             )
         X = new_x
     q = principal(loops.joints, np.round(q, DIGITS).tolist())
-    warnings.warn(_told(entry, loops, X, q, [len(leg) for leg in found]), SpecNote, stacklevel=2)
+    entry.warn(_told(loops, X, q, [len(leg) for leg in found]), SpecNote)
     return X, q
 
 
-def _told(entry: Entry, loops: Loops, X: Array, q: Array, counts: list[int]) -> str:
+def _told(loops: Loops, X: Array, q: Array, counts: list[int]) -> str:
     """The displacements that were found, as the file could state them."""
     rows = ", ".join(f"[{', '.join(f'{x:.6g}' for x in q[s] + 0.0)}]" for s in loops.slices())
     size = max(abs(x) for leg in loops.legs for x in (*leg.base_point, *leg.platform_point))
     size = max(size, float(np.abs(X[: loops.size]).max()))
     doubt = f"; lengths are in m: is {size:g} in mm?" if size >= LARGE else ""
     return (
-        f"{entry.source}: {entry.where}: q found from X: q = [{rows}], of "
+        f": q found from X: q = [{rows}], of "
         f"{', '.join(map(str, counts))} closures the usual ones (pne-gen home lists all){doubt}"
     )
 
@@ -168,12 +165,9 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
             problem=f"the loops do not close at X: {widest}{mistaken_unit(loops, X, given)}",
         )
     if max(residuals) > TOLERANCE:
-        warnings.warn(
-            f"{entry.source}: {entry.where}: taken as a rough guess (loop-closure residual "
-            f"{widest.size} at legs[{widest.leg}]); closed by a change of at most {moved:.3g} "
-            "(m or rad)",
-            SpecWarning,
-            stacklevel=2,
+        entry.warn(
+            f": taken as a rough guess (loop-closure residual {widest.size} at "
+            f"legs[{widest.leg}]); closed by a change of at most {moved:.3g} (m or rad)"
         )
     return new_x, principal(loops.joints, new_q.tolist())
 

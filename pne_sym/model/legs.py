@@ -57,9 +57,7 @@ def read_legs(legs: Entry, leg_types: Entry | None, space: Space) -> tuple[Leg, 
     result = tuple(_read_leg(entry, types, used, space) for entry in entries)
     refuse_twice(legs, [leg.name for leg in result], "leg")
     for name in types.keys() - used:
-        entry = types[name].entry
-        message = f"{entry.source}: {entry.where}: no leg is of this type"
-        warnings.warn(message, SpecWarning, stacklevel=2)
+        types[name].entry.warn(": no leg is of this type")
     return _typed(legs, result, {name: _structure(table, space) for name, table in types.items()})
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pne_sym.model.effects import Actuator, Effects, Friction, Limits, Spring
 from pne_sym.model.entry import Entry, Table
@@ -37,12 +37,9 @@ def read_effects(
     springs = _each(table.get("spring"), count, _spring, mixed=mixed)
     limits = _each(table.get("limits"), count, _limits, mixed=mixed)
     motors = _each(table.get("actuator"), count, read_actuator, mixed=mixed and sum(actuated) > 1)
-    entry = table.get("actuator")
-    if entry:
-        motors = _actuated(entry, motors, actuated)
-    entry = table.get("limits")
-    if entry:
-        limits = _of_actuated_efforts(entry, limits, actuated)
+    motors = _where_actuated(table.get("actuator"), motors, actuated, lambda _: None, "no motor {}")
+    efforts = "no effort {}: nothing acts there"
+    limits = _where_actuated(table.get("limits"), limits, actuated, _without_effort, efforts)
     return tuple(map(Effects, frictions, springs, motors, limits))
 
 
@@ -68,31 +65,27 @@ def _each(
     return (read(entry),) * count
 
 
-def _actuated(
-    entry: Entry, motors: tuple[Actuator | None, ...], actuated: Sequence[bool]
-) -> tuple[Actuator | None, ...]:
-    """Motors of the actuated degrees of freedom: one table is meant for these alone."""
-    listed = isinstance(entry.value, list | tuple)
-    idle = any(motor and not own for motor, own in zip(motors, actuated, strict=True))
-    if idle and (listed or not any(actuated)):
-        raise entry.fault("no motor where the joint is not actuated")
-    return tuple(motor if own else None for motor, own in zip(motors, actuated, strict=True))
+def _where_actuated(
+    entry: Entry | None,
+    values: tuple[_Kind | None, ...],
+    actuated: Sequence[bool],
+    idle: Callable[[Any], _Kind | None],
+    expected: str,
+) -> tuple[_Kind | None, ...]:
+    """What degrees of freedom have, where only actuated ones can have all of it.
+
+    One table is meant for the actuated ones; the others have of it what is left `idle`.
+    """
+    pairs = zip(values, actuated, strict=True)
+    found = tuple(value if own or value is None else idle(value) for value, own in pairs)
+    if entry and found != values and (isinstance(entry.value, list | tuple) or not any(actuated)):
+        raise entry.fault(expected.format("where the joint is not actuated"))
+    return found
 
 
-def _of_actuated_efforts(
-    entry: Entry, limits: tuple[Limits | None, ...], actuated: Sequence[bool]
-) -> tuple[Limits | None, ...]:
-    """Limits with efforts of actuated degrees of freedom: one table's effort is for these alone."""
-    listed, found = isinstance(entry.value, list | tuple), []
-    for of, own in zip(limits, actuated, strict=True):
-        if own or of is None or of.effort is None:
-            found.append(of)
-        elif listed or not any(actuated):
-            raise entry.fault("no effort where the joint is not actuated: nothing acts there")
-        else:
-            rest = replace(of, effort=None)
-            found.append(None if rest == Limits() else rest)
-    return tuple(found)
+def _without_effort(limits: Limits) -> Limits | None:
+    rest = replace(limits, effort=None)
+    return None if rest == Limits() else rest
 
 
 def read_friction(entry: Entry) -> Friction:

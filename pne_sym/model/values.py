@@ -7,10 +7,8 @@ exactly zero, so that later stages may compare with zero.
 from __future__ import annotations
 
 import math
-import warnings
 
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecWarning
 from pne_sym.model.manipulator import IDENTITY3, Matrix3, Vector3
 from pne_sym.model.rotation import is_rotation, matrix3, orthonormalised, rotation_from_rpy, vector3
 
@@ -128,8 +126,7 @@ def rotation(entry: Entry, *, plane: bool = False) -> Matrix3:
         name, angles = next(iter(table.fields.items()))
         rpy = numbers(angles, 3, "three angles: roll, pitch, yaw")
         if name == "rpy" and max(map(abs, rpy)) > math.tau:
-            message = f"{angles.source}: {angles.where}: more than a turn; rpy_deg is in degrees"
-            warnings.warn(message, SpecWarning, stacklevel=2)
+            angles.warn(": more than a turn; rpy_deg is in degrees")
         result = rotation_from_rpy(vector3(rpy), degrees=name == "rpy_deg")
     else:
         result = matrix(entry, plane=plane)
