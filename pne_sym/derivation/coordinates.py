@@ -102,6 +102,7 @@ class Coordinates:
         limited: (leg, joint) of the entries of q that have limits.
         bounded: (leg, joint) of the entries of tau that have limits.
         overconstrained: how many constraints follow from the others.
+        cases: numbers of the sections of the paper that apply, such as "3.1".
     """
 
     space: str
@@ -123,6 +124,7 @@ class Coordinates:
     limited: tuple[tuple[int, int], ...] = ()
     bounded: tuple[tuple[int, int], ...] = ()
     overconstrained: int = 0
+    cases: tuple[str, ...] = ()
 
     @property
     def lengths(self) -> dict[str, int]:

@@ -80,6 +80,7 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
 
 def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) -> Coordinates:
     """Names and order of what goes in and comes out."""
+    found = mobility(manipulator)
     joints = [
         (i, j, joint)
         for i, leg in enumerate(manipulator.legs)
@@ -107,7 +108,8 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         turning=tuple(joint.kind.is_hinge for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         actuation=actuation(manipulator),
-        overconstrained=mobility(manipulator).overconstrained,
+        overconstrained=found.overconstrained,
+        cases=found.cases,
         transmits_moments=any(leg.motion.n or leg.dynamics.moment != ZeroVector for leg in legs),
         constraint_units=tuple(unit for *_, unit in constraints),
         names=tuple(

@@ -104,7 +104,7 @@ section 3 of the paper: ordinary (3.1)
         passive=passive,
         unheld=dofs - held,
         singular_legs=singular,
-        cases=_cases(manipulator, dofs, passive, by_leg),
+        cases=_cases(manipulator, dofs, passive if held < dofs else 0, by_leg),
     )
 
 
@@ -239,8 +239,9 @@ def _legs(manipulator: Manipulator) -> Iterator[tuple[Array, Array, Array, Array
 def _cases(
     manipulator: Manipulator, dofs: int, passive: int, constraints: tuple[int, ...]
 ) -> tuple[str, ...]:
+    """Numbers of the cases; passive extra coordinates that actuators determine are none of them."""
     actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
-    kinematic = any(joint.extra and joint.actuated for joint in manipulator.joints)
+    kinematic = sum(joint.extra for joint in manipulator.joints) > passive
     actuated = dofs - passive  # that the actuators are to determine
     found = []
     # A leg without actuators that restricts the platform guides it: it is none too many.

@@ -151,6 +151,14 @@ def test_passive_freedoms_do_not_hide_redundancy() -> None:
     assert found.cases == ("3.3", "3.6")
 
 
+def test_what_actuators_determine_is_not_passive() -> None:
+    """An actuator at the base moves the middle joint of a leg that has one too many."""
+    legs = ["Rz Px* | R", "Rz Px* | R", "Rz Px* | R", "Rz* Rz+ Rz | R"]
+    found = mobility(mechanism("planar", legs, np.random.default_rng(1)))
+    assert (found.dofs, found.actuators, found.passive, found.unheld) == (4, 4, 1, 0)
+    assert found.cases == ("3.5",)
+
+
 def one_guide() -> Manipulator:
     """A actuated slide that carries a platform without turning: two constraints."""
     return mechanism("translational", ["Px* | S"], np.random.default_rng(0))

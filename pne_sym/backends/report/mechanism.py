@@ -51,27 +51,7 @@ def _letters(bundle: Bundle) -> str:
 
 def cases(bundle: Bundle) -> tuple[str, ...]:
     """The cases of section 3 of the paper that apply."""
-    sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
-    joints = manipulator.joints
-    actuators = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
-    spare = [
-        sum(joint.actuated and joint.extra for joint in leg.joints) for leg in manipulator.legs
-    ]
-    dofs = sizes["NV"] - sizes["NC"]
-    found = []
-    if any(joint.extra and joint.actuated for joint in joints):
-        found.append("3.5")
-    if any(joint.extra and not joint.actuated for joint in joints):
-        found.append("3.6")
-    if sizes["NC"]:
-        found.append("3.7")
-    if len(manipulator.legs) > dofs:
-        found.append("3.3")
-    if sizes["NU"] > dofs and max(actuators) > 1:
-        found.append("3.4")
-    elif any(n - extra > 1 for n, extra in zip(actuators, spare, strict=True)):
-        found.append("3.2")
-    return tuple(CASES[case] for case in (found or ["3.1"]))
+    return tuple(CASES[case] for case in bundle.coordinates.cases)
 
 
 def sizes(bundle: Bundle) -> Table:

@@ -159,7 +159,7 @@ CASES: dict[str, str] = {
     "3.4": "Redundant actuation (Sec. 3.4): more actuators than degrees of freedom, since joints "
     "that could be passive are actuated. Forces can be shared; H has more columns than rows.",
     "3.5": "Kinematic redundancy (Sec. 3.5): actuated joints that can move while the platform "
-    "stands. Their displacements are extra coordinates, with equations of their own (Eq. 6).",
+    "stands. Extra coordinates tell how they do, with equations of their own (Eq. 6).",
     "3.6": "Passive degrees of freedom (Sec. 3.6): passive joints that can move while the platform "
     "stands, such as a leg that spins about itself. Their displacements are extra coordinates, "
     "with equations of their own (Eq. 7).",
