@@ -5,18 +5,17 @@ from __future__ import annotations
 import ast
 import symtable
 from collections.abc import Iterable
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from pne_sym.backends.templating import reached
 
 
 class _Part(NamedTuple):
-    """A function, a class or a constant: its source, and the names that occur in it."""
+    """A function, a class or a constant: its source."""
 
     text: str
     is_constant: bool
-    names: frozenset[str]
 
 
 def needed(support: str, texts: Iterable[str]) -> str:
@@ -27,8 +26,7 @@ def needed(support: str, texts: Iterable[str]) -> str:
         texts: Python source that uses some of them.
     """
     parts = _parts(support)
-    uses = {name: part.names for name, part in parts.items()}
-    found = reached(map(_named, texts), uses, frozenset)
+    found = reached(texts, {name: part.text for name, part in parts.items()}, _named)
     text, before = "", None
     for part in dict.fromkeys(parts[name] for name in found):
         gap = "\n" if part.is_constant and before else "\n\n\n" if text else ""
@@ -43,7 +41,7 @@ def _parts(support: str) -> dict[str, _Part]:
     for node in ast.parse(support).body:
         assert node.end_lineno is not None
         text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
-        part = _Part(text, isinstance(node, ast.Assign), _named(text))
+        part = _Part(text, isinstance(node, ast.Assign))
         found |= dict.fromkeys(_made(node), part)
     return found
 
@@ -56,6 +54,7 @@ def _made(node: ast.stmt) -> list[str]:
     return [n.id for target in node.targets for n in ast.walk(target) if isinstance(n, ast.Name)]
 
 
+@lru_cache(1 << 12)  # most are of the support, which all models have
 def _named(text: str) -> frozenset[str]:
     """Names that occur in source, those of attributes apart."""
     tables, found = [symtable.symtable(text, "", "exec")], set[str]()

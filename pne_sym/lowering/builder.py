@@ -38,15 +38,18 @@ class Builder(Statements):
             factor, other = expr.args
             if factor is _MINUS and other.is_Symbol:
                 return expr
-        sign, key = algebra.signed(expr)
-        known = self._value.get(key)
-        if known is not None:
-            return known if sign == 1 else algebra.negative(known)
+        asked = self._value_of(expr)
+        if asked.signed is None:
+            sign, key = algebra.signed(expr)
+            asked.signed = sign, key, self._value_of(key)
+        sign, key, value = asked.signed
+        if value.atom is not None:
+            return value.atom if sign == 1 else algebra.negative(value.atom)
         if not hint:  # only what has a name keeps its sign: names do not lie
-            made = self._remember(key, self._record(key, hint, named=named))
+            made = self._remember(value, self._record(key, hint, named=named))
             return made if sign == 1 else algebra.negative(made)
         symbol = self._record(expr, hint, named=named)
-        self._remember(key, symbol if sign == 1 else algebra.negative(symbol))
+        self._remember(value, symbol if sign == 1 else algebra.negative(symbol))
         return symbol
 
     def total(self, atom: Atom, leg_type: str, hint: str) -> Atom:
@@ -57,10 +60,10 @@ class Builder(Statements):
             return -self.total(-atom, leg_type, hint)
         if not self.stage_of(atom).per_leg:
             return self.let(self.leg_counts[leg_type] * atom, hint)
-        key = ("total", leg_type, atom)
-        if key in self._value:
-            return self._value[key]
-        return self._remember(key, self._record(atom, hint, named=True, total_of=leg_type))
+        value = self._value_of(("total", leg_type, atom))
+        if value.atom is not None:
+            return value.atom
+        return self._remember(value, self._record(atom, hint, named=True, total_of=leg_type))
 
     # ---- arithmetic on atoms -----------------------------------------------------------
 
@@ -69,12 +72,12 @@ class Builder(Statements):
         present = [t for t in terms if t is not _ZERO]
         if len(present) < 2:
             return present[0] if present else _ZERO
-        key = ("sum", *present)
-        known = self._value.get(key)
-        if known is not None:
-            return known
-        total = self._opened(algebra.total(*present))
-        return self._remember(key, self.let(total, hint, named=named))
+        value = self._value_of(("sum", *present))
+        if value.atom is not None:
+            return value.atom
+        if value.total is None:
+            value.total = algebra.total(*present)
+        return self._remember(value, self.let(self._opened(value.total), hint, named=named))
 
     def dot(
         self, u: Iterable[Atom], v: Iterable[Atom], hint: str = "", *, named: bool = False
@@ -109,11 +112,10 @@ class Builder(Statements):
             return _ZERO
         if a is _ONE or b is _ONE:
             return b if a is _ONE else a
-        key = ("product", a, b)
-        known = self._value.get(key)
-        if known is not None:
-            return known
-        return self._remember(key, self._product(a, b, hint, named=named))
+        value = self._value_of(("product", a, b))
+        if value.atom is not None:
+            return value.atom
+        return self._remember(value, self._product(a, b, hint, named=named))
 
     def _product(self, a: Atom, b: Atom, hint: str, *, named: bool) -> Atom:
         if a.is_Number or b.is_Number:
@@ -123,11 +125,12 @@ class Builder(Statements):
             a, sign = algebra.negative(a), -sign
         if b.is_Mul:
             b, sign = algebra.negative(b), -sign
-        cancelled = self._square_of_root(a) if hash(a) == hash(b) and a == b else None
+        of_a, of_b = self._written(a), self._written(b)
+        cancelled = self._square_of_root(a) if a is b or (hash(a) == hash(b) and a == b) else None
         if cancelled is None:
-            cancelled = self._cancel(a, b)
+            cancelled = self._cancel(of_a, b, of_b)
         if cancelled is None:
-            cancelled = self._cancel(b, a)
+            cancelled = self._cancel(of_b, a, of_a)
         if cancelled is None:
             cancelled = self.let(algebra.product(a, b), hint, named=named)
         return cancelled if sign == 1 else algebra.negative(cancelled)
@@ -149,23 +152,22 @@ class Builder(Statements):
             radicands.append(source.base)
         return radicands[0] if len(radicands) == 1 else None
 
-    def _cancel(self, a: sp.Symbol, b: sp.Symbol) -> Atom | None:
-        """a b where a is made of 1/b, or b is 1/x and a is made of x; None if neither."""
-        made = self.maker(a)
-        if made is None or made.total_of:
-            return None
-        expr = made.expr
-        if expr.is_Mul:
-            for wanted in (self._value.get(algebra.inverse(b)), self._base_of_inverse(b)):
-                if wanted is not None and wanted in expr.args:
-                    return self.let(algebra.quotient(expr, wanted))
-        return _ONE if expr.is_Pow and expr == algebra.inverse(b) else None
+    def _written(self, symbol: sp.Symbol) -> Any:
+        """The expression of a value; None of sums over legs and of what is given."""
+        made = self.maker(symbol)
+        return None if made is None or made.total_of else made.expr
 
-    def _base_of_inverse(self, b: sp.Symbol) -> Atom | None:
-        made = self.maker(b)
-        if made is not None and made.expr.is_Pow and made.expr.exp == -1:
-            return made.expr.base
-        return None
+    def _cancel(self, of_a: Any, b: sp.Symbol, of_b: Any) -> Atom | None:
+        """a b where a is made of 1/b, or b is 1/x and a is made of x; None if neither."""
+        if of_a is None or not (of_a.is_Mul or of_a.is_Pow):
+            return None
+        if of_a.is_Mul:
+            base = of_b.base if of_b is not None and of_b.is_Pow and of_b.exp == -1 else None
+            for wanted in (self._value_of(algebra.inverse(b)).atom, base):
+                if wanted is not None and wanted in of_a.args:
+                    return self.let(algebra.quotient(of_a, wanted))
+            return None
+        return _ONE if of_a == algebra.inverse(b) else None
 
     def inverse(self, a: Atom) -> Atom:
         """1 / atom."""

@@ -82,7 +82,10 @@ def program_of(
     listed = tuple((store.array, store.stage.leg_type) for store in stores)
     reserved = outside | {name for name, _ in listed} | _input_names(derivation)
     names |= numbered(run, reserved, lambda s, made: meaning.stem(s, ChainMap(made, names)))
-    functions = {s.part.name: _function(derivation, builder, s, names, meaning) for s in sliced}
+    called = dict(zip((s.target for s in run), renamed(names, run), strict=True))
+    functions = {
+        s.part.name: _function(derivation, builder, s, names, called, meaning) for s in sliced
+    }
     return Program(
         prepare,
         listed,
@@ -126,12 +129,14 @@ def _function(
     builder: Builder,
     sliced: _Sliced,
     names: dict[Any, Any],
+    called: dict[Any, Statement],
     meaning: Meaning,
 ) -> Function:
     vectors, assignments, checks = _unpacked(derivation, sliced)
     per_leg = _read_per_leg(derivation, builder, sliced)
     vectors |= {entry.vector for read in per_leg.values() for entry in read}
-    run, ends = renamed(names, sliced.run), [rewritten(end, names) for end in sliced.ends]
+    run = [called[s.target] for s in sliced.run]
+    ends = [rewritten(end, names) for end in sliced.ends]
     constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     leg_types = [t.name for t in derivation.leg_types]
     return Function(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -16,7 +15,7 @@ _RANKS = {name: k for k, name in enumerate(ordering_of_classes)}
 class Linear(NamedTuple):
     """number + sum of factor times term; no factor is zero, no term is a sum or has a factor."""
 
-    factors: Mapping[Any, Any]
+    factors: dict[Any, Any]
     number: Any = _ZERO
 
 
@@ -50,9 +49,14 @@ def _merged(forms: list[Linear]) -> Linear:
     number = _ZERO
     for form in forms:
         number = number if form.number is _ZERO else number + form.number
-        for symbol, factor in form.factors.items():
-            factors[symbol] = factors[symbol] + factor if symbol in factors else factor
-    return Linear({s: f for s, f in factors.items() if f is not _ZERO}, number)
+        joint = factors | form.factors
+        if len(joint) < len(factors) + len(form.factors):
+            for symbol in factors.keys() & form.factors.keys():
+                joint[symbol] = factors[symbol] + form.factors[symbol]
+        factors = joint
+    if any(factor is _ZERO for factor in factors.values()):
+        factors = {s: f for s, f in factors.items() if f is not _ZERO}
+    return Linear(factors, number)
 
 
 def scaled(form: Linear, by: int) -> Linear:

@@ -72,19 +72,42 @@ class _Known:
     """What is known of a symbol; each has one, which stays while the symbol is forgotten.
 
     Attributes:
+        symbol: whose it is.
         stage: at which it is there; None while it is forgotten.
         made: the statement that makes it; None of what is given from outside.
         needs: the made values in its statement.
         weight: operations of its statement; None until they are asked for.
     """
 
-    __slots__ = ("made", "needs", "stage", "weight")
+    __slots__ = ("made", "needs", "stage", "symbol", "weight")
 
-    def __init__(self) -> None:
+    def __init__(self, symbol: Any) -> None:
+        self.symbol = symbol
         self.stage: Stage | None = None
         self.made: Statement | None = None
         self.needs: tuple[_Known, ...] = ()
         self.weight: int | None = None
+
+
+class _Value:
+    """The value of what can be asked for; each has one, which stays while the value is forgotten.
+
+    So nothing is looked up again to forget it or to make it anew.
+
+    Attributes:
+        atom: None while it is not known.
+        parts: what is known of the symbols of an expression; None until it is asked for.
+        signed: of an expression its sign, what it is without, and the value of that; likewise.
+        total: what SymPy makes of a sum of atoms; likewise.
+    """
+
+    __slots__ = ("atom", "parts", "signed", "total")
+
+    def __init__(self) -> None:
+        self.atom: Atom | None = None
+        self.parts: tuple[_Known, ...] | None = None
+        self.signed: tuple[int, Any, _Value] | None = None
+        self.total: Any = None
 
 
 @dataclass(frozen=True)
@@ -94,12 +117,12 @@ class Undone:
     Attributes:
         statements: as they were, with what was known of their targets.
         guards: as they were.
-        values: expressions and the atoms that had their values.
+        values: with the atoms that they were.
         issues: per statement its hint, the number issued before it, and the last one.
     """
 
-    statements: list[tuple[_Known, Statement, tuple[_Known, ...]]]
-    values: list[tuple[Any, Atom]]
+    statements: list[tuple[_Known, Statement, tuple[_Known, ...], int | None]]
+    values: list[tuple[_Value, Atom]]
     guards: list[Check]
     issues: list[tuple[str, int, int]]
 
@@ -112,10 +135,10 @@ class Statements:
         self.equation = ""
         self.quantity_of: dict[str, str] = {}
         self.leg_counts: dict[str, int] = {}
-        self._value: dict[Any, Atom] = {}
-        self._asked: list[Any] = []  # what values are known under, in order
+        self._values: dict[Any, _Value] = {}  # by what is asked for
+        self._found: list[_Value] = []  # those that are known, in order
         self._known: dict[sp.Symbol, _Known] = {}
-        self._parts_of: dict[Any, tuple[_Known, ...]] = {}
+        self._called: dict[str, _Known] = {}  # of what was made, by its name
         self._order: list[_Known] = []  # of the statements
         self._names: set[str] = set()
         self._issued: dict[str, int] = {}
@@ -156,16 +179,15 @@ class Statements:
     def _of(self, symbol: sp.Symbol) -> _Known:
         known = self._known.get(symbol)
         if known is None:
-            known = self._known[symbol] = _Known()
+            known = self._known[symbol] = _Known(symbol)
         return known
 
     def _parts(self, expr: Any) -> tuple[_Known, ...]:
         """What is known of the symbols in an expression; trials ask for the same ones again."""
-        parts = self._parts_of.get(expr)
-        if parts is None:
-            parts = tuple(self._known[symbol] for symbol in algebra.symbols(expr))
-            self._parts_of[expr] = parts
-        return parts
+        value = self._value_of(expr)
+        if value.parts is None:
+            value.parts = tuple([self._known[symbol] for symbol in algebra.symbols(expr)])
+        return value.parts
 
     # ---- values ----------------------------------------------------------------------
 
@@ -176,10 +198,13 @@ class Statements:
         parts = self._parts(expr)
         stage = _joined(parts).after_sum() if total_of else _joined(parts)
         hint = self._stem(hint, stage)
-        symbol = algebra.symbol(self._fresh(hint))
-        made = Statement(symbol, expr, stage, self.equation, total_of, named, hint)
-        self._place(self._of(symbol), made, tuple(part for part in parts if part.made))
-        return symbol
+        name = self._fresh(hint)
+        known = self._called.get(name)
+        if known is None:
+            known = self._called[name] = self._of(algebra.symbol(name))
+        made = Statement(known.symbol, expr, stage, self.equation, total_of, named, hint)
+        self._place(known, made, tuple([part for part in parts if part.made]))
+        return known.symbol
 
     def _stem(self, hint: str, stage: Stage) -> str:
         """What a name begins with."""
@@ -197,16 +222,29 @@ class Statements:
         self._issued[hint] = k
         return name
 
-    def _place(self, known: _Known, made: Statement, needs: tuple[_Known, ...]) -> None:
+    def _place(
+        self,
+        known: _Known,
+        made: Statement,
+        needs: tuple[_Known, ...],
+        weight: int | None = None,
+    ) -> None:
         """Put a statement behind the others."""
-        known.stage, known.made, known.needs, known.weight = made.stage, made, needs, None
+        known.stage, known.made, known.needs, known.weight = made.stage, made, needs, weight
         self._order.append(known)
 
-    def _remember(self, key: Any, value: Atom) -> Atom:
-        """Keep a value under what asks for it, until a rollback."""
-        self._value[key] = value
-        self._asked.append(key)
+    def _value_of(self, asked: Any) -> _Value:
+        """The place for the value of what is asked for."""
+        value = self._values.get(asked)
+        if value is None:
+            value = self._values[asked] = _Value()
         return value
+
+    def _remember(self, value: _Value, atom: Atom) -> Atom:
+        """Keep a value until a rollback."""
+        value.atom = atom
+        self._found.append(value)
+        return atom
 
     def guard(self, status: str, value: Atom, scale: Atom, power: int) -> None:
         """Require a condition; constants and parameters need no guard at run time."""
@@ -221,35 +259,37 @@ class Statements:
 
     def mark(self) -> tuple[int, int, int]:
         """A point to return to."""
-        return len(self._order), len(self._asked), len(self.guards)
+        return len(self._order), len(self._found), len(self.guards)
 
     def rollback(self, mark: tuple[int, int, int]) -> Undone:
         """Forget all that was made since the mark; what was forgotten, for `redo`."""
-        statements, asked, guards = mark
+        statements, values, guards = mark
         forgotten = Undone(
-            [(known, known.made, known.needs) for known in self._order[statements:] if known.made],
-            [(key, self._value.pop(key)) for key in self._asked[asked:]],
+            [(k, k.made, k.needs, k.weight) for k in self._order[statements:] if k.made],
+            [(value, value.atom) for value in self._found[values:]],
             self.guards[guards:],
             [(hint, before, self._issued[hint]) for hint, before in self._issues[statements:]],
         )
-        for known, made, _ in forgotten.statements:
+        for known, made, _, _ in forgotten.statements:
             known.stage, known.made, known.needs = None, None, ()
             self._names.discard(made.target.name)
+        for value, _ in forgotten.values:
+            value.atom = None
         for hint, before, _ in reversed(forgotten.issues):
             self._issued[hint] = before
         del self._issues[statements:]
         del self._order[statements:]
-        del self._asked[asked:]
+        del self._found[values:]
         del self.guards[guards:]
         return forgotten
 
     def redo(self, forgotten: Undone) -> None:
         """Make again what a rollback to the present point has forgotten."""
-        for known, made, needs in forgotten.statements:
-            self._place(known, made, needs)
+        for known, made, needs, weight in forgotten.statements:
+            self._place(known, made, needs, weight)
             self._names.add(made.target.name)
-        for key, value in forgotten.values:
-            self._remember(key, value)
+        for value, atom in forgotten.values:
+            self._remember(value, atom)
         self.guards += forgotten.guards
         for hint, before, after in forgotten.issues:
             self._issues.append((hint, before))
@@ -316,7 +356,7 @@ class Statements:
 
 def _joined(parts: Sequence[_Known]) -> Stage:
     """The stage of what is made of these."""
-    stages = [part.stage for part in parts if part.stage]
-    if stages and all(stage is stages[0] for stage in stages):
-        return stages[0]
-    return algebra.joined(frozenset(stages))
+    stages = {id(part.stage): part.stage for part in parts if part.stage}
+    if len(stages) == 1:
+        return next(iter(stages.values()))
+    return algebra.joined(frozenset(stages.values()))

@@ -186,9 +186,10 @@ def check_dependence(m: Manipulator) -> None:
         SpecError: random motions along the degrees of freedom at home end where loops do not
             close, or where there are fewer degrees of freedom.
     """
-    home, rng = mobility(m), np.random.default_rng(1)
+    home = mobility(m)
     if not home.overconstrained:
         return
+    rng = np.random.default_rng(1)
     for _ in range(_POSES):
         found = elsewhere(m, rng)
         moved = found is not None and _way(m, found) > _LEAST

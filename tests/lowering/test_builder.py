@@ -61,7 +61,7 @@ def _state(b: Builder) -> Any:
         list(b.guards),
         [(s, b.maker(s.target), b.stage_of(s.target)) for s in b.statements],
         set(b.given_names()),
-        dict(b._value),
+        {asked: v.atom for asked, v in b._values.items() if v.atom is not None},
         {hint: last for hint, last in b._issued.items() if last},
     )
 
