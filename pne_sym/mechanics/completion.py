@@ -206,17 +206,9 @@ def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: P
     n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
     columns = np.vstack([tip.T @ chain.velocities / g.arm, n @ chain.spins])[:, free]
     about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T / g.arm, n @ tip])
-    effect = {
-        Space.TRANSLATIONAL: np.eye(3, len(columns)),
-        Space.SPHERICAL: about_origin.T,
-        Space.SPATIAL: np.vstack([np.eye(3, len(columns)), about_origin.T]),
-    }
-    in_plane = np.zeros((0, len(columns)))  # where no wrench is asked for
-    return _State(
-        columns / np.linalg.norm(columns, axis=0),
-        effect.get(manipulator.space, in_plane),
-        about_origin,
-    )
+    effect = np.vstack([np.eye(3, len(columns)), about_origin.T])
+    free = [c for c in range(6) if c in TASK_SPACES[manipulator.space].components]
+    return _State(columns / np.linalg.norm(columns, axis=0), effect[free], about_origin)
 
 
 def _rank(rows: Array) -> int:

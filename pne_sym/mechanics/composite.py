@@ -102,7 +102,10 @@ class CompositeWriter:
         moment = self.eq.named("hc_#", vector_sum(p.first_moment for p in parts), k)
         tensor = tensor_sum(p.inertia for p in parts)
         if k == group:
-            tensor = self.eq.named("Jc_#", tensor, k, self._but_the_last())
+            # The last link may be counted with the platform.
+            carried = any(body.at_tip for body in self.bodies.values())
+            last = ", that of the last link about the connection point" * carried
+            tensor = self.eq.named("Jc_#", tensor, k, last)
         return _Body(mass, moment, tensor)
 
     def _moved(self, body: _Body, arm: Any) -> _Body:
@@ -118,11 +121,6 @@ class CompositeWriter:
             - Outer(arm, middle)
             - Outer(middle, arm),
         )
-
-    def _but_the_last(self) -> str:
-        """The last link where its mass is counted with the platform."""
-        carried = any(body.at_tip for body in self.bodies.values())
-        return ", that of the last link about the connection point" if carried else ""
 
     def _effort(self, k: int, body: _Body) -> tuple[Any, Any]:
         """Force, and moment about the group's origin, per unit acceleration of joint k."""

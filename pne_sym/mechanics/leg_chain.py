@@ -68,8 +68,8 @@ class LegChain:
     @cached_property
     def spans(self) -> dict[int, Vector]:
         """From the origin of a group to the next group's joint, or to the connection point."""
-        return {group: self._span(group) for group in [0, *self.turning]}
-
-    def _span(self, group: int) -> Vector:
-        last = max(j for j in self.g.group if self.g.group[j] == group)
-        return vector_sum((self.reach(last), self.g.offset[last + 1]))
+        last = {group: j for j, group in sorted(self.g.group.items())}
+        return {
+            group: vector_sum((self.reach(last[group]), self.g.offset[last[group] + 1]))
+            for group in [0, *self.turning]
+        }

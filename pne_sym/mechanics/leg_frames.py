@@ -167,7 +167,6 @@ class _Frames:
         z_vector = self.eq.give("z_#", z, group)
         direction = self.eq.give("l_#", components, group)
         x_vector = self._perpendicular_unit(group, direction, z_vector)
-        self.g.x_axis[group] = x_vector
         return matrix, (x_vector, Cross(z_vector, x_vector), z_vector)
 
     def _perpendicular_unit(

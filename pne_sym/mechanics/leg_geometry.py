@@ -33,7 +33,6 @@ class LegGeometry:
         e: axis vectors by joint number 1..m.
         offset: offset vectors a_1..a_{m+1} by joint number (m+1: the tip).
         group: group of link j by joint number (link 0: the base).
-        x_axis: canonical x axis by group.
         zero_turn: (cos, sin) of the angle from turn frame to canonical frame at
             zero displacement, by joint number.
         turn_axes: axes of the turn frame as columns in the canonical axes before it, 0, 1, -1
@@ -62,7 +61,6 @@ class LegGeometry:
     e: dict[int, VectorSymbol] = field(default_factory=dict)
     offset: dict[int, Vector] = field(default_factory=dict)
     group: dict[int, int] = field(default_factory=dict)
-    x_axis: dict[int, VectorSymbol] = field(default_factory=dict)
     zero_turn: dict[int, tuple[Any, Any]] = field(default_factory=dict)
     turn_axes: dict[int, tuple[Any, ...]] = field(default_factory=dict)
     pitch: dict[int, Any] = field(default_factory=dict)

@@ -128,21 +128,19 @@ class _Writer:
         """Of the links that joint j turns."""
         g, joints = self.g, self.joints
         is_last = j == self.chain.last
+        # What of the last link's angular acceleration the inertia at the tip needs.
+        joints_alone = vector_sum(joints.qdd[k] * g.spin(k) for k in self.chain.turning)
         alpha = self.eq.collected(
             "alpha_#",
             previous + joints.qdd[j] * g.spin(j) + joints.coriolis[j],
             j,
             collected=not g.composite or is_last,
-            accelerated=self._of_joints() if g.composite and is_last else None,
+            accelerated=joints_alone if g.composite and is_last else None,
         )
         rest, spin = joints.known[alpha].remainder, joints.spin[j]
         tensor = self.eq("B_#", Skew(alpha) + spin, j)
         at_rest = self.eq("B_#_o", Skew(rest) + spin, j)
         return GroupMotion(joints.omega[j], alpha, (tensor, at_rest))
-
-    def _of_joints(self) -> Vector:
-        """What of the last link's angular acceleration the inertia at the tip needs."""
-        return vector_sum(self.joints.qdd[j] * self.g.spin(j) for j in self.chain.turning)
 
     def _origins(self, groups: Mapping[int, GroupMotion], base: Vector) -> dict[int, Vector]:
         """Accelerations of the groups' origins, outwards (the last link is seen from the tip)."""

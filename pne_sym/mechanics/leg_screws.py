@@ -96,7 +96,8 @@ class ScrewWriter:
         g = self.g
         v = {j: self._velocity_vector(j, rods) for j in self.chain.joints}
         joints = [j for j in self.chain.joints if not g.is_extra(j)]
-        directions = self._moment_directions()
+        # Directions of the moments that the platform joint transmits.
+        directions = [self.eq("n_m#", Cross(*pair), k) for k, pair in enumerate(g.pairs, 1)]
         dofs = [
             Column(
                 v[j],
@@ -121,10 +122,6 @@ class ScrewWriter:
         vector, like = Cross(g.spin(j), rods[j]) + g.slide(j), g.turn(j) * g.size
         named: Vector = self.eq("v_#", vector, j, like=like)
         return named
-
-    def _moment_directions(self) -> list[Any]:
-        """Directions of the moments that the platform joint transmits."""
-        return [self.eq("n_m#", Cross(*pair), k) for k, pair in enumerate(self.g.pairs, 1)]
 
     def _constraint_wrenches(
         self, v: dict[int, Vector], joints: list[int], dofs: list[Column], directions: list[Any]

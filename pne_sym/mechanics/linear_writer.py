@@ -35,6 +35,10 @@ class Collection:
     known: dict[Any, LinearForm]
     named: dict[Any, Any]
 
+    def form(self, expr: Any) -> LinearForm:
+        """An expression collected in the unknowns."""
+        return linear_form(expr, self.unknowns, self.known)
+
     def rest(self, symbol: Any) -> Any:
         """Remainder of a quantity at zero acceleration."""
         return self.known[symbol].remainder if symbol in self.known else symbol
@@ -64,38 +68,27 @@ class LinearWriter(Writer):
         The coefficients are those of `accelerated`, an expression that depends on the
         acceleration as x does (default: rhs itself).  If not `collected`, nobody needs them.
         """
-        motion = self.collection
-        form = linear_form(rhs, motion.unknowns, motion.known)
+        form = self.collection.form(rhs)
         if not collected:
             form = LinearForm({}, form.remainder)
         elif accelerated is not None:
-            other = linear_form(accelerated, motion.unknowns, motion.known)
-            form = replace(other, remainder=form.remainder)
+            form = replace(self.collection.form(accelerated), remainder=form.remainder)
         symbol = self(stem, rhs, *numbers, **facts)
         term, stem = self.table[stem].numbered(numbers), filled(stem, numbers)
-        by_rules = partial(
-            self.book.define,
-            law=Law.RULES,
-            body=self.frame(term, numbers),
-            expanded=rhs,
-            reference="Sec. 2.3, Eq. 4",
-        )
+        body, reference = self.frame(term, numbers), "Sec. 2.3, Eq. 4"
+        define = partial(self.book.define, law=Law.RULES, reference=reference)
+        by_rules = partial(define, body=body, expanded=rhs)
         coefficients = {
             x: self._coefficient(x, form, stem, term, by_rules) for x in form.coefficients
         }
         rest = form.remainder
         if not is_named(rest):
-            rest = by_rules(
-                self._name(f"{stem}_o"),
-                rest,
-                rf"{term.latex}^{{\circ}}",
-                f"remainder of: {term.meaning}",
-                forms=rest_forms,
-                remainder_of=symbol.name,
-            )
-        motion.known[symbol] = LinearForm(coefficients, rest)
+            latex, title = rf"{term.latex}^{{\circ}}", f"remainder of: {term.meaning}"
+            name, own = self._name(f"{stem}_o"), symbol.name
+            rest = by_rules(name, rest, latex, title, forms=rest_forms, remainder_of=own)
+        known = self.collection.known[symbol] = LinearForm(coefficients, rest)
         if collected:
-            self.book.collect(symbol.name, motion.known[symbol], form)
+            self.book.collect(symbol.name, known, form)
         else:
             self.book.collect_no_coefficients(symbol.name)
         return symbol

@@ -17,7 +17,6 @@ from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.live import note, of_all
 from pne_sym.mechanics.placing import Placer, actuated
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.vector import linear_form
 from pne_sym.vector.arrays import (
     Applied,
     Relation,
@@ -68,7 +67,7 @@ def _coupled(leg: Leg, j: int) -> dict[str, Any]:
     A rotor's inertia is given by its root: with it M comes out symmetric.
     """
     motor, motion = leg.dynamics.forces.motors.get(j, _DIRECT), leg.motion
-    form = linear_form(motion.qdd[j], motion.collection.unknowns, motion.known)
+    form = motion.collection.form(motion.qdd[j])
     return {
         "actuated_rates": motion.qd[j],
         "actuated_accelerations": motion.qdd[j],

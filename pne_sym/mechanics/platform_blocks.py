@@ -160,20 +160,17 @@ class BlockWriter:
 
     def _rest(self, symbol: str, name: str, form: LinearForm) -> Any:
         """What is left of a quantity at zero acceleration of the platform."""
-        equation = self._equation(name)
+        equation, forms = self._equation(name), tuple[Any, ...]()
+        if symbol == FORCES.own and equation.forms:  # with the spin's tensor, which legs use too
+            forms = (self.p.spin @ self.moment - self.mass * self.p.gravity,)
         return self.eq(
             symbol,
             form.remainder,
             body=self.book.notation[name].body,
-            forms=self._by_spin_tensor(equation) if symbol == FORCES.own else (),
+            forms=forms,
             expanded=equation.rhs,
             remainder_of=name,
         )
-
-    def _by_spin_tensor(self, equation: Equation) -> tuple[Any, ...]:
-        """The platform's force at rest with the tensor of its spin, which legs use too."""
-        h, mass = self.moment, self.mass
-        return (self.p.spin @ h - mass * self.p.gravity,) if equation.forms else ()
 
     def _collected(
         self, side: Side, found: dict[str, Any], own: LinearForm, form: LinearForm

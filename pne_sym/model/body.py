@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from pne_sym.model.entry import Entry
@@ -33,8 +35,7 @@ def read_body(entry: Entry, *, plane: bool, also: tuple[str, ...] = ()) -> Body:
     """
     table = entry.table((*FIELDS, *also))
     mass = not_negative(table.require("mass", "a number (kg)"))
-    point = table.get("centre_of_mass")
-    centre = vector(point, plane=plane) if point else ZERO3
+    centre = table.read("centre_of_mass", partial(vector, plane=plane), ZERO3)
     inertia = table.get("inertia")
     about = table.get("inertia_about")
     if inertia is None:

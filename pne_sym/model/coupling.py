@@ -28,11 +28,9 @@ def read_coupling(entry: Entry | None, legs: Sequence[Leg]) -> Rows | None:
     count = sum(joint.actuated for leg in legs for joint in leg.joints)
     if not count:
         raise entry.fault("no such field: no joint is actuated")
-    what = f"{count} rows of {count} numbers, one for each actuated joint, in the order of tau"
-    rows = entry.items()
-    if len(rows) != count:
-        raise entry.fault(what, f"{len(rows)} rows")
-    found = tuple(numbers(row, count, what) for row in rows)
+    which = f" of {count} numbers, one for each actuated joint, in the order of tau"
+    rows = entry.counted(count, "rows", which)
+    found = tuple(numbers(row, count, f"{count} rows{which}") for row in rows)
     if not is_invertible(found):
         raise entry.fault(
             "a matrix with an inverse: of independent motors", "the matrix is singular"

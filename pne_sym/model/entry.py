@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from pne_sym.model.errors import SpecError, SpecWarning, printable, show
 
 MAX_ELEMENTS = 4096
 """Lists and tables beyond it are refused at once, before any work is done on them."""
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,22 @@ class Entry:
         self._check_size(len(self.value))
         return [Entry(self.source, f"{self.where}[{i}]", v) for i, v in enumerate(self.value)]
 
+    def counted(self, count: int, what: str, which: str) -> list[Entry]:
+        """The elements of a list of a given length.
+
+        Args:
+            count: how many.
+            what: they are called.
+            which: they are, for the message.
+
+        Raises:
+            SpecError: not a list, or of another length.
+        """
+        items = self.items()
+        if len(items) != count:
+            raise self.fault(f"{count} {what}{which}", f"{len(items)} {what}")
+        return items
+
     def text(self) -> str:
         """The value as a string.
 
@@ -136,6 +154,10 @@ class Table:
     def get(self, name: str) -> Entry | None:
         """The field, or None where it is left out."""
         return self.fields.get(name)
+
+    def read(self, name: str, reader: Callable[[Entry], _Value], default: _Value) -> _Value:
+        """The field as a reader has it; the default where it is left out."""
+        return reader(self.fields[name]) if name in self.fields else default
 
     def require(self, name: str, expected: str) -> Entry:
         """The field.

@@ -53,11 +53,7 @@ def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3
 
 def _read_x(entry: Entry, loops: Loops) -> Array:
     names = TASK_SPACES[loops.space].pose_names + ("extra coordinate",) * int(loops.extra.sum())
-    items = entry.items()
-    if len(items) != len(names):
-        raise entry.fault(
-            f"{len(names)} numbers ({', '.join(names)})", problem=f"{len(items)} numbers"
-        )
+    items = entry.counted(len(names), "numbers", f" ({', '.join(names)})")
     X = np.array([number(item) for item in items])
     start = TASK_SPACES[loops.space].quaternion_at
     if start is not None:
@@ -71,32 +67,17 @@ def _read_x(entry: Entry, loops: Loops) -> Array:
 
 def _read_q(entry: Entry, loops: Loops) -> Array:
     """Displacements, flat or one list for each leg."""
-    joints = loops.joints
     items = entry.items()
     if items and isinstance(items[0].value, list):
-        items = _flat(entry, items, loops)
-    if len(items) != len(joints):
-        raise entry.fault(
-            f"{len(joints)} numbers: one for each joint, leg by leg from the base",
-            problem=f"{len(items)} numbers",
+        rows = zip(
+            entry.counted(len(loops.legs), "lists", ", one for each leg"), loops.legs, strict=True
         )
+        each = "numbers", ", one for each joint"
+        items = [item for row, leg in rows for item in row.counted(len(leg.joints), *each)]
+    else:
+        which = ": one for each joint, leg by leg from the base"
+        items = entry.counted(len(loops.joints), "numbers", which)
     return np.array([number(item) for item in items])
-
-
-def _flat(entry: Entry, items: list[Entry], loops: Loops) -> list[Entry]:
-    if len(items) != len(loops.legs):
-        raise entry.fault(
-            f"{len(loops.legs)} lists, one for each leg", problem=f"{len(items)} lists"
-        )
-    result = []
-    for item, leg in zip(items, loops.legs, strict=True):
-        own = item.items()
-        if len(own) != len(leg.joints):
-            raise item.fault(
-                f"{len(leg.joints)} numbers, one for each joint", problem=f"{len(own)} numbers"
-            )
-        result += own
-    return result
 
 
 def _check_extra(entry: Entry, in_x: Array, in_q: Array) -> None:

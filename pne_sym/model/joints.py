@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -43,19 +44,13 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
         SpecError: a value or a combination without meaning.
     """
     table = entry.table(FIELDS)
-    known = [kind.letter for kind in WrittenJoint]
-    kind = WrittenJoint(table.require("kind", letters(WrittenJoint)).choice(known))
+    kind = _kind(table, plane=plane)
     kinds = kind.parts
-    if plane and not kind.in_plane:
-        flat = letters(each for each in WrittenJoint if each.in_plane)
-        raise table.fields["kind"].fault(f"{flat}: other joints leave the plane")
     axes = _axes(table, kind, plane=plane)
     actuated = flags(table.get("actuated"), len(kinds))
     extra = flags(table.get("extra"), len(kinds))
-    start = table.get("offset")
-    first_offset = offset(start, plane=plane) if start else ZERO3
-    link = table.get("link")
-    last_link = read_body(link, plane=plane) if link else MASSLESS
+    first_offset = table.read("offset", partial(offset, plane=plane), ZERO3)
+    last_link = table.read("link", partial(read_body, plane=plane), MASSLESS)
     pitch = _pitch(table, kind)
     effects = read_effects(table, actuated, mixed=len(set(kinds)) > 1)
     names = _names(table.get("name"), len(kinds))
@@ -74,6 +69,15 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
         )
         for i in range(len(kinds))
     )
+
+
+def _kind(table: Table, *, plane: bool) -> WrittenJoint:
+    known = [kind.letter for kind in WrittenJoint]
+    kind = WrittenJoint(table.require("kind", letters(WrittenJoint)).choice(known))
+    if plane and not kind.in_plane:
+        flat = letters(each for each in WrittenJoint if each.in_plane)
+        raise table.fields["kind"].fault(f"{flat}: other joints leave the plane")
+    return kind
 
 
 def _names(entry: Entry | None, count: int) -> list[str]:
@@ -100,8 +104,7 @@ def read_platform_joint(entry: Entry, *, plane: bool) -> PlatformJoint:
     table = entry.table(PLATFORM_FIELDS)
     known = [kind.letter for kind in PlatformJointKind]
     kind = PlatformJointKind(table.require("kind", letters(PlatformJointKind)).choice(known))
-    start = table.get("offset")
-    point = offset(start, plane=plane) if start else ZERO3
+    point = table.read("offset", partial(offset, plane=plane), ZERO3)
     friction = _friction(table, kind)
     if plane:
         return replace(_planar_platform_joint(table, kind, point), friction=friction)

@@ -54,11 +54,6 @@ class TaskSpace:
         return any(c < 3 for c in self.components)
 
     @property
-    def has_quaternion(self) -> bool:
-        """Whether orientation is given by a quaternion."""
-        return self.quaternion_at is not None
-
-    @property
     def quaternion_at(self) -> int | None:
         """Where the quaternion of the orientation begins in X, if there is one."""
         return self.pose_names.index("qx") if "qx" in self.pose_names else None
@@ -88,16 +83,12 @@ ORIGIN = Pose(np.zeros(3), np.eye(3))
 
 def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:
     """The pose that the platform coordinates state."""
-    eye = np.eye(3)
-    if space is Space.POINT:
-        return Pose(np.array([X[0], X[1], 0.0]), eye)
-    if space is Space.PLANAR:
-        return Pose(np.array([X[0], X[1], 0.0]), rotation_about((0.0, 0.0, 1.0), X[2]))
-    if space is Space.TRANSLATIONAL:
-        return Pose(np.array(X[:3]), eye)
-    if space is Space.SPHERICAL:
-        return Pose(np.array(centre), rotation_of_quaternion(X[:4]))
-    return Pose(np.array(X[:3]), rotation_of_quaternion(X[3:7]))
+    of = TASK_SPACES[space]
+    R = rotation_about((0.0, 0.0, 1.0), X[2]) if of.planar and of.rotates else np.eye(3)
+    if of.quaternion_at is not None:
+        R = rotation_of_quaternion(X[of.quaternion_at : of.quaternion_at + 4])
+    position = (*X[:2], 0.0) if of.planar else X[:3]
+    return Pose(np.array(position if of.translates else centre), R)
 
 
 def displaced(space: Space, X: Array, step: Array) -> Array:

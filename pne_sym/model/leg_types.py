@@ -12,14 +12,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.model.effects import Actuator, Friction, Spring
 from pne_sym.model.manipulator import Leg, Vector3
 
 TOLERANCE = 1e-9
 Key = tuple[object, ...]
-_Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 from pne_sym.model.entry import Entry, Table, nearest
 from pne_sym.model.errors import SpecError, SpecWarning
@@ -110,13 +111,12 @@ def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> L
     table = entry.table(FIELDS)
     plane = is_plane(space)
     shared = _shared(table, types, used)
-    frame, named, of = table.get("base_frame"), table.get("name"), table.get("type")
     end = _platform_joint(table, shared, space)
     return Leg(
-        type=of.text() if of else "",
-        name=read_part_name(named) if named else "",
+        type=table.read("type", Entry.text, ""),
+        name=table.read("name", read_part_name, ""),
         base_point=vector(table.require("base_point", "its position (m)"), plane=plane),
-        base_frame=rotation(frame, plane=plane) if frame else IDENTITY3,
+        base_frame=table.read("base_frame", partial(rotation, plane=plane), IDENTITY3),
         joints=_joints(table, shared, end, plane=plane),
         platform_joint=end,
         platform_point=_platform_point(table, space),

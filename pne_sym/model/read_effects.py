@@ -50,12 +50,8 @@ def _each(
     if entry is None or entry.value is False:
         return (None,) * count
     if isinstance(entry.value, list | tuple):
-        items = entry.items()
-        if len(items) != count:
-            raise entry.fault(
-                f"{count} entries, a table or false for each degree of freedom",
-                f"{len(items)} entries",
-            )
+        which = ", a table or false for each degree of freedom"
+        items = entry.counted(count, "entries", which)
         return tuple(None if item.value is False else read(item) for item in items)
     if mixed:
         raise entry.fault(
@@ -97,25 +93,21 @@ def read_friction(entry: Entry) -> Friction:
     table = entry.table(FRICTION)
     if not {"viscous", "coulomb"} & table.fields.keys():
         raise entry.fault("viscous, coulomb with velocity_scale, or all three")
-    viscous, coulomb = table.get("viscous"), table.get("coulomb")
     scale = None
-    if coulomb:
+    if table.get("coulomb"):
         meaning = "the rate below which it grows linearly"
         scale = _positive(table.require("velocity_scale", meaning))
     else:
         table.refuse(("velocity_scale",), "it belongs to coulomb")
     return Friction(
-        not_negative(viscous) if viscous else None,
-        not_negative(coulomb) if coulomb else None,
-        scale,
+        table.read("viscous", not_negative, None), table.read("coulomb", not_negative, None), scale
     )
 
 
 def _spring(entry: Entry) -> Spring:
     table = entry.table(SPRING)
     stiffness = not_negative(table.require("stiffness", "a number (N m/rad or N/m)"))
-    rest = table.get("rest")
-    return Spring(stiffness, number(rest) if rest else 0.0)
+    return Spring(stiffness, table.read("rest", number, 0.0))
 
 
 def read_actuator(entry: Entry) -> Actuator:
@@ -137,14 +129,18 @@ def _limits(entry: Entry) -> Limits:
     table = entry.table(LIMITS)
     if not table.fields:
         raise entry.fault("displacement = [least, largest], rate, effort, or some of them")
-    rate, effort, range_ = table.get("rate"), table.get("effort"), table.get("displacement")
-    between = None
-    if range_:
-        least, largest = numbers(range_, 2, "a list of two numbers: least, largest")
-        if not least < largest:
-            raise range_.fault("a least displacement below the largest")
-        between = (least, largest)
-    return Limits(between, _positive(rate) if rate else None, _positive(effort) if effort else None)
+    return Limits(
+        table.read("displacement", _range, None),
+        table.read("rate", _positive, None),
+        table.read("effort", _positive, None),
+    )
+
+
+def _range(entry: Entry) -> tuple[float, float]:
+    least, largest = numbers(entry, 2, "a list of two numbers: least, largest")
+    if not least < largest:
+        raise entry.fault("a least displacement below the largest")
+    return least, largest
 
 
 def _positive(entry: Entry) -> float:

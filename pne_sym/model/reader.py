@@ -6,6 +6,7 @@ Warnings are issued as `SpecWarning` through `warnings.warn`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from pne_sym.model.body import FIELDS as BODY_FIELDS
@@ -101,7 +102,7 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         legs=legs,
         fixed_centre=centre,
         symbols=read_symbols(table.get("symbols")),
-        moving_base=_flag(table, "moving_base"),
+        moving_base=table.read("moving_base", Entry.flag, False),
         coupling=read_coupling(table.get("coupling"), legs),
         home=_home(at_home, space, legs, centre),  # last: what is found is told
     )
@@ -143,17 +144,10 @@ def _title(table: Table, name: str) -> str:
     return title
 
 
-def _flag(table: Table, name: str) -> bool:
-    entry = table.get(name)
-    return entry.flag() if entry else False
-
-
 def _gravity(table: Table, space: Space) -> Vector3:
-    entry = table.get("gravity")
-    if entry is None:
-        down = (0.0, -STANDARD_GRAVITY, 0.0)
-        return down if is_plane(space) else (0.0, 0.0, -STANDARD_GRAVITY)
-    return vector(entry, plane=is_plane(space))
+    g, plane = -STANDARD_GRAVITY, is_plane(space)
+    down = (0.0, g, 0.0) if plane else (0.0, 0.0, g)
+    return table.read("gravity", partial(vector, plane=plane), down)
 
 
 def _platform(table: Table, space: Space) -> Body:
