@@ -23,16 +23,13 @@ from pne_sym.program.ir import Block, Store
 from pne_sym.program.slices import symbols
 
 
-def _dimensions(shape: tuple[int, ...]) -> str:
-    return "".join(f"[{n}]" for n in shape)
-
-
 def parameter_fields(bundle: Bundle) -> list[str]:
     """Members of the structure of parameters, each with its meaning and unit."""
     lines = []
     for f in field_views(bundle):
         lines += comment(f"{f.meaning} [{f.unit}]")
-        lines.append(f"{bundle.name}_real {f.name}{_dimensions(f.shape)};")
+        dimensions = "".join(f"[{n}]" for n in f.shape)
+        lines.append(f"{bundle.name}_real {f.name}{dimensions};")
     return lines
 
 

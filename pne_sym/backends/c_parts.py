@@ -49,18 +49,14 @@ class Parts:
         self.summed = summed
         self.name = function.name
         self.titles = equation_titles(bundle.derivation)
-        self.slices = slices(function)
-        self.first, self.legs, self.last = (
-            self.slices.before,
-            self.slices.legs,
-            self.slices.after,
-        )
-        self.passed, self.sums = stages.passed(function.name), self.slices.sums
-        self.made = self.slices.made
+        self.slices = own = slices(function)
+        self.first, self.legs, self.last = own.before, own.legs, own.after
+        self.passed, self.sums, self.made = stages.passed(function.name), own.sums, own.made
         self.least = least_values(bundle)
         self.known = stages.known(function.name)
         self.first_checks = [*function.unpack_checks, *(self.first.checks if self.first else ())]
-        self.early, self.late = halves(self.slices, stages, self._read_at_once())
+        stores = self.first.stores if self.first else ()
+        self.early, self.late = halves(self.slices, stages, read_by((*self.first_checks, *stores)))
 
     def place_of(
         self, store: Store, index: str, name: str, tables: list[str], legs: int = 1
@@ -103,10 +99,6 @@ class Parts:
         if half is self.early:
             lines += self._ends(self.first, self.first_checks, loads, shared)
         return self._routine(part, ("values *v", "real *s"), lines)
-
-    def _read_at_once(self) -> set[str]:
-        """Names that checks and entries before the legs read."""
-        return read_by((*self.first_checks, *(self.first.stores if self.first else ())))
 
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""

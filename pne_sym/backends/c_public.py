@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_operations import WITHOUT, c_order, runs_in_lanes
@@ -99,7 +99,10 @@ def _function(
     given = {a.name: a for a in f.inputs if a.name not in WITHOUT or weighted}
     sizes = sizes_of(bundle)
     inputs = tuple(_input(given[name], sizes) for name in c_order(list(given)))
-    outputs = tuple(_array(_OUTPUTS.get(o.label, o.label), o, sizes) for o in f.outputs)
+    outputs = tuple(
+        CArray(_OUTPUTS.get(o.label, o.label), o.value.size, extent(o, sizes), _shape(o))
+        for o in f.outputs
+    )
     meaning = f.meaning + _LEAST[weighted] * least + _ALSO.get(f.name, "")
     missing = [a for a in f.inputs if a.name not in given]
     words = " ".join(a.name for a in missing)
@@ -118,12 +121,7 @@ def _function(
 
 def _input(a: Argument, sizes: dict[str, int]) -> CArray:
     optional = a.default not in (None, Default.ONES) or not a.value.size
-    array = _array(a.name, a, sizes)
-    return replace(array, optional=optional, positive=a.positive)
-
-
-def _array(name: str, a: Argument, sizes: dict[str, int]) -> CArray:
-    return CArray(name, a.value.size, extent(a, sizes), _shape(a))
+    return CArray(a.name, a.value.size, extent(a, sizes), _shape(a), optional, a.positive)
 
 
 def _shape(a: Argument) -> str:

@@ -8,7 +8,8 @@ of an equation the cheapest is taken.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import partial
 from typing import Any
 
@@ -29,7 +30,6 @@ from pne_sym.lowering.rotation import Rotation
 from pne_sym.lowering.statements import Atom
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
 from pne_sym.lowering.triples import IDENTITY, Matrix, Triple, matrix, symmetrised
-from pne_sym.lowering.uses import uses
 from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
@@ -74,7 +74,7 @@ class Lowering:
         self.d = derivation
         self.b = builder
         self.definition: dict[str, Equation] = {e.name: e for e in derivation.equations()}
-        self._uses = uses(self.definition, outputs)
+        self._uses = self._counted(outputs)
         self._place = {name: k for k, name in enumerate(self.definition)}
         self.given = {g.symbol: g for g in derivation.givens}
         self.trials = Trials(builder)
@@ -83,6 +83,19 @@ class Lowering:
         self._totals: dict[Component, Atom] = {}  # sums over legs, by what they are
         self._in_progress: set[str] = set()
         self.rotation, self.bases = Rotation(self), Bases(self)
+
+    def _counted(self, outputs: Iterable[Output]) -> Counter[str]:
+        """By name, how many of these outputs, and equations that they need, use a quantity."""
+        stack = [name for output in outputs for name in sorted(names_in(output.value))]
+        found, seen = Counter(stack), set[str]()
+        while stack:
+            name = stack.pop()
+            if name in self.definition and name not in seen:
+                seen.add(name)
+                used = sorted(names_in(self.definition[name].rhs))
+                found.update(used)
+                stack += used
+        return found
 
     # ---- what was made -----------------------------------------------------------------
 
@@ -239,15 +252,14 @@ class Lowering:
 
     def frames_of(self, expr: Any) -> list[str]:
         """Home frames of the vectors and tensors in an expression, most frequent first."""
-        found: dict[str, int] = {}
-        for symbol in _symbols(expr):
-            if symbol in self.given:
-                frame = self.given[symbol].frame
-            else:
-                self.ensure(symbol.name)
-                frame = self.home[symbol.name]
-            found[frame] = found.get(frame, 0) + 1
+        found = Counter(self._home(symbol) for symbol in _symbols(expr))
         return sorted(found, key=lambda f: (-found[f], f)) or ["base"]
+
+    def _home(self, symbol: Any) -> str:
+        if symbol in self.given:
+            return self.given[symbol].frame
+        self.ensure(symbol.name)
+        return self.home[symbol.name]
 
     # ---- vectors and tensors ---------------------------------------------------------------
 
@@ -289,11 +301,8 @@ class Lowering:
 
     def _turned(self, symbol: Any, frame: str) -> Any:
         """What is given or was made in its home frame, in another."""
-        if symbol in self.given:
-            home, value = self.given[symbol].frame, self.given[symbol].components
-        else:
-            home = self.home[symbol.name]
-            value = self.known[symbol.name, home]
+        home, given = self._home(symbol), self.given.get(symbol)
+        value = given.components if given else self.known[symbol.name, home]
         if isinstance(symbol, n.VectorSymbol):
             return self.rotation.vector(value, home, frame, symbol.name)
         rows = value if len(value) == 3 else matrix(lambda i, j: value[3 * i + j])
@@ -355,10 +364,7 @@ def _symbols(expr: Any) -> list[Any]:
     """Vector and tensor symbols of an expression, in order of appearance."""
     if isinstance(expr, n.VectorSymbol | n.TensorSymbol):
         return [expr]
-    found: list[Any] = []
-    for arg in getattr(expr, "args", ()):
-        found.extend(symbol for symbol in _symbols(arg) if symbol not in found)
-    return found
+    return list(dict.fromkeys(s for arg in getattr(expr, "args", ()) for s in _symbols(arg)))
 
 
 def _lengths_across(equation: Equation) -> Iterator[Any]:

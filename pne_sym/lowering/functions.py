@@ -10,8 +10,7 @@ from typing import Any
 from pne_sym.derivation import Derivation
 from pne_sym.lowering.algebra import symbols
 from pne_sym.lowering.builder import Builder
-from pne_sym.lowering.closures import closures, given_displacements
-from pne_sym.lowering.inputs import leg_inputs, unpack
+from pne_sym.lowering.inputs import closures, given_displacements, leg_inputs, unpack
 from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.shapes import shapes
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed, still_used

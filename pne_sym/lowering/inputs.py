@@ -1,4 +1,4 @@
-"""From the flat vectors X, V, A to the scalars that the derivation names."""
+"""From the flat vectors X, V, A and q to the scalars that the derivation names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sympy as sp
 
 from pne_sym.derivation import PLATFORM, Derivation, Role
 from pne_sym.lowering.algebra import symbol as as_symbol
-from pne_sym.program.ir import Assignment, Check
+from pne_sym.program.ir import Assignment, Check, Closure
 
 
 def entry(vector: str, index: int) -> sp.Symbol:
@@ -150,3 +150,26 @@ def leg_inputs(derivation: Derivation, name: str) -> tuple[str, tuple[int, ...]]
         Role.JOINT_ACCELERATION: ("A", len(coordinates.rates)),
     }[quantity.role or Role.DISPLACEMENT]
     return vector, tuple(start + coordinates.extras.index(joint) for joint in joints)
+
+
+def closures(derivation: Derivation) -> tuple[Closure, ...]:
+    """The leg types whose displacements are found by iteration."""
+    c = derivation.coordinates
+    assert c is not None
+    found = []
+    for t in derivation.leg_types:
+        if t.is_closed:
+            continue
+        looked_for = [j for j in range(t.joints) if t.methods[j] != "given"]
+        joints = tuple(tuple(c.joints.index((i, j)) for j in looked_for) for i in t.indices)
+        turning = tuple(j for leg in joints for j in leg if c.turning[j])
+        _, signs = derivation.parameters.branches.get(t.orientation_sign, ("", ()))
+        found.append(Closure(t.name, joints, turning, t.orientation, signs, t.orientation_sign))
+    return tuple(found)
+
+
+def given_displacements(derivation: Derivation) -> tuple[tuple[int, int], ...]:
+    """(position in q, position in X) of the extra coordinates."""
+    c = derivation.coordinates
+    assert c is not None
+    return tuple((c.joints.index(e), k) for k, e in enumerate(c.extras, len(c.pose)))

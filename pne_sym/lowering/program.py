@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +11,6 @@ import sympy as sp
 from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Builder
 from pne_sym.lowering.components import Lowering
-from pne_sym.lowering.coupling import with_coupling
 from pne_sym.lowering.functions import Slice, program_of
 from pne_sym.lowering.margins import Margins
 from pne_sym.lowering.meaning import Meaning
@@ -24,9 +23,10 @@ from pne_sym.lowering.stores import stores
 from pne_sym.program.ir import Check, Kind, Program, Stage, Store
 from pne_sym.program.verify import verify
 
+Group = tuple[tuple[str, tuple[str, ...]], ...]
 # Arrays of each function; functions of one group are lowered together, so that they share
 # what they have in common.
-GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
+GROUPS: tuple[Group, ...] = (
     (
         ("dynamics", ("M", "Z", "H", "Hk", "constraint_bias")),
         ("M", ("M",)),
@@ -50,6 +50,15 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
     (("effort_limits", ("effort_limits",)),),
     (("condition", ("lengths",)),),
 )
+# Arrays besides where motors are coupled.  A motor turns with several joints, of several legs: what
+# its rotor does is no sum over legs; steps of public functions put it together from these arrays.
+_ROTORS = ("rotor_roots", "coupling")
+_BESIDES: dict[str, tuple[str, ...]] = {
+    "dynamics": ("actuated_bias", *_ROTORS),
+    "M": ("H", *_ROTORS),
+    "Z": ("H", "actuated_bias", *_ROTORS),
+    "required": ("actuated_accelerations", *_ROTORS),
+}
 
 
 def lower(derivation: Derivation) -> Program:
@@ -64,8 +73,7 @@ def lower(derivation: Derivation) -> Program:
     _declare(derivation, builder)
     shape_of = shapes(derivation)
     slices, lowerings = [], []
-    groups = with_coupling(GROUPS, {output.array for output in derivation.outputs})
-    for group in (*groups, *_closure_groups(derivation)):
+    for group in _groups(derivation):
         together = {a for _, arrays in group for a in arrays}
         stored, lowering = _cheapest_stores(derivation, builder, together, group[0][1])
         lowerings.append(lowering)
@@ -105,13 +113,17 @@ def _add_margins(derivation: Derivation, builder: Builder, slices: dict[str, Sli
     made.guards = margins.guards
 
 
-def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
-    """A function per leg type whose displacements are found by iteration."""
-    return [
-        ((f"closure_{t.name}", (f"residual_{t.name}", f"jacobian_{t.name}")),)
-        for t in derivation.leg_types
-        if not t.is_closed
-    ]
+def _groups(derivation: Derivation) -> Iterator[Group]:
+    """Groups of functions, one per leg type whose displacements are found by iteration too."""
+    made = {output.array for output in derivation.outputs}
+    besides = _BESIDES if "rotor_roots" in made else {}
+    for group in GROUPS:
+        yield tuple(
+            (name, arrays + tuple(a for a in besides.get(name, ()) if a == "H" or a in made))
+            for name, arrays in group
+        )
+    for t in (t for t in derivation.leg_types if not t.is_closed):
+        yield ((f"closure_{t.name}", (f"residual_{t.name}", f"jacobian_{t.name}")),)
 
 
 _Stored = dict[Output, list[Store]]

@@ -15,14 +15,19 @@ def with_notes(function: PublicFunction, c: Coordinates, *, guessed: bool) -> Pu
         "inverse_dynamics": _inverse_dynamics(c),
         "complete_acceleration": [_completion(c)],
         "leg_reactions": ["The actuators give the forces of `inverse_dynamics`."],
-        "null_space": _null_space(function),
+        "null_space": ["It is empty: the actuators are not redundant."]
+        * (not function.outputs[0].value.size),
         "forward_kinematics": [
             "Extra coordinates that actuators do not determine stay.",
             "Impossible where no pose is found.",
         ],
         "project": ["By Gauss-Newton; impossible where none is found."],
-        "rotation": _rotation(c),
-        "manipulability": _manipulability(c),
+        "rotation": ["Impossible where the quaternion is zero or its squared length overflows."]
+        * c.has_quaternion,
+        "manipulability": [
+            "Of N^T H, N an orthonormal basis of the motions that constraints leave."
+        ]
+        * (c.sizes["NC"] > 0),
         "reachable_wrench": _REACHABLE,
         "reachable_acceleration": _REACHABLE,
         "force_distribution": _DISTRIBUTION,
@@ -45,12 +50,6 @@ _DISTRIBUTION = (
         "pull with negative forces: tau_max = -t keeps tensions of t at least."
     ),
 )
-
-
-def _manipulability(c: Coordinates) -> list[str]:
-    if not c.sizes["NC"]:
-        return []
-    return ["Of N^T H, N an orthonormal basis of the motions that constraints leave."]
 
 
 def _branch(*, guessed: bool) -> str:
@@ -105,14 +104,3 @@ def _completion(c: Coordinates) -> str:
     if constrained:
         found += ".  Constraints may ask for other entries; what forward dynamics gives obeys both"
     return f"{found}."
-
-
-def _null_space(function: PublicFunction) -> list[str]:
-    empty = not function.outputs[0].value.size
-    return ["It is empty: the actuators are not redundant."] if empty else []
-
-
-def _rotation(c: Coordinates) -> list[str]:
-    if not c.has_quaternion:
-        return []
-    return ["Impossible where the quaternion is zero or its squared length overflows."]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
@@ -42,17 +41,14 @@ class Screws:
     weights: list[Atom]
     keep: Callable[[dict[Any, Any], Any, Any], Any]
     used: list[int] = field(init=False)
+    columns: list[int] = field(init=False)
     _bases: dict[Any, Any] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.columns = list(range(len(self.sizes)))
         self.used = [i for i, row in enumerate(self.rows) if any(e != 0 for e in row)]
         if len(self.used) != len(self.sizes):
             raise SingularPatternError("the joints' degrees of freedom are dependent by structure")
-
-    @cached_property
-    def columns(self) -> list[int]:
-        """Numbers of the columns."""
-        return list(range(len(self.sizes)))
 
     def orthogonal(self, b: Builder, rows: Sequence[int], columns: Sequence[int]) -> _Orthogonal:
         """Orthonormal basis of a part of the screws."""
@@ -69,7 +65,7 @@ def solve(b: Builder, screws: Screws, right: Sequence[Atom], hints: Sequence[str
     Raises:
         SingularPatternError: by structure there is no unique solution.
     """
-    system = _System(b, screws, dict(enumerate(right)), hints, across=False)
+    system = _System(b, screws, right, hints, across=False)
     system.run(screws.used, screws.columns)
     return [system.x[j] for j in screws.columns]
 
@@ -80,7 +76,7 @@ def solve_transposed(b: Builder, screws: Screws, right: Sequence[Atom]) -> list[
     Raises:
         SingularPatternError: by structure there is no unique solution.
     """
-    system = _System(b, screws, dict(enumerate(right)), (), across=True)
+    system = _System(b, screws, right, [""] * len(screws.rows), across=True)
     system.run(screws.columns, screws.used)
     return [system.x.get(i, sp.S.Zero) for i in range(len(screws.rows))]
 
@@ -92,7 +88,7 @@ class _System:
         self,
         b: Builder,
         screws: Screws,
-        right: dict[int, Atom],
+        right: Sequence[Atom],
         hints: Sequence[str],
         *,
         across: bool,
@@ -110,10 +106,6 @@ class _System:
         column, row = (i, j) if self.across else (j, i)
         size, weight = self.screws.sizes[column], self.screws.weights[row]
         return sp.S.One if size == weight else self.b.divide(size, weight)
-
-    def hint(self, j: int) -> str:
-        """Name for an unknown."""
-        return self.hints[j] if self.hints else ""
 
     def run(self, rows: Sequence[int], columns: Sequence[int]) -> None:
         """Solve the equations `rows` for the unknowns `columns`."""
@@ -151,7 +143,7 @@ class _System:
     def _pivot(self, i: int, j: int) -> None:
         pivot = self.entry(i, j)
         self.b.guard("singular", pivot, self.size(i, j), 1)
-        self.x[j] = self.b.divide(self._rest(i, (j,)), pivot, self.hint(j))
+        self.x[j] = self.b.divide(self._rest(i, (j,)), pivot, self.hints[j])
 
     # ---- determinants ----------------------------------------------------------------
 
@@ -171,7 +163,7 @@ class _System:
                     tuple(k for k in rows if k != i), tuple(k for k in columns if k != j)
                 )
                 terms.append((-1) ** (p + q) * b.mul(minor, right[i]))
-            self.x[j] = b.divide(b.add(terms), determinant, self.hint(j))
+            self.x[j] = b.divide(b.add(terms), determinant, self.hints[j])
 
     def _minor(self, rows: tuple[int, ...], columns: tuple[int, ...]) -> Atom:
         """Determinant of a part of the matrix, by its row with most zeros."""
@@ -208,7 +200,7 @@ class _System:
                 -b.mul(basis.upper[p, k], self.x[basis.order[k]])
                 for k in range(p + 1, len(basis.order))
             ]
-            self.x[j] = b.mul(b.add([parts[p], *known]), basis.inverse[p], self.hint(j))
+            self.x[j] = b.mul(b.add([parts[p], *known]), basis.inverse[p], self.hints[j])
 
     def _across_orthogonal(self, rows: Sequence[int], columns: Sequence[int]) -> None:
         """y with s_j . y = r_j: its components along the orthogonal basis, one after another."""

@@ -16,9 +16,7 @@ def count_expression(expr: Any) -> Counts:
     """Operations of a scalar expression as it is printed (powers as products)."""
     if expr.is_Symbol or expr.is_Number:
         return Counts()
-    total = Counts()
-    for arg in expr.args:
-        total = total + count_expression(arg)
+    total = sum(map(count_expression, expr.args), Counts())
     if expr.is_Add:
         return total + Counts(add=len(expr.args) - 1)
     if expr.is_Mul:
@@ -53,15 +51,10 @@ def _power(exponent: Any) -> Counts:
 
 def count_block(block: Block) -> Counts:
     """Operations of one pass of a block, its sums included."""
-    total = Counts(add=len(block.sums))
-    for assignment in block.assignments:
-        total = total + count_expression(assignment.expr)
-    return total
+    return sum((count_expression(a.expr) for a in block.assignments), Counts(add=len(block.sums)))
 
 
 def count_function(function: Function, legs: Mapping[str, int]) -> Counts:
     """Operations of a function; a leg loop counts once per leg."""
-    total = Counts()
-    for block in function.blocks:
-        total = total + count_block(block).times(legs.get(block.leg_type, 1))
-    return total
+    blocks = (count_block(b).times(legs.get(b.leg_type, 1)) for b in function.blocks)
+    return sum(blocks, Counts())

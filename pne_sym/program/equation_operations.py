@@ -35,7 +35,8 @@ def least_norm(a: Array, b: Array) -> Array:
     """
     bad = ~(finite(a) & finite(b))
     a = blanked(a, bad)
-    size = _row_sizes(a)
+    size = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0)
+    size = np.where(size > 0.0, size, 1.0)
     u, s, vt = np.linalg.svd(a / size, full_matrices=False)
     y = (np.swapaxes(u, -1, -2) @ (b / size[..., 0])[..., None]) / s[..., None]
     x: Array = (np.swapaxes(vt, -1, -2) @ y)[..., 0]
@@ -80,11 +81,6 @@ def null_basis(a: Array, *, numbers: tuple[int, ...]) -> Array:
     basis = np.array(np.swapaxes(vt[:, numbers[0] :], -1, -2))
     basis[bad] = np.nan
     return basis
-
-
-def _row_sizes(a: Array) -> Array:
-    size = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0)
-    return np.where(size > 0.0, size, 1.0)
 
 
 # ---- bounds ----

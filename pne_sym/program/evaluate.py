@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import enum
 import math
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -223,14 +225,6 @@ def value_of(expr: Any, values: Mapping[str, Array]) -> Array:
     return rule(expr, values)
 
 
-def _sum(expr: Any, values: Mapping[str, Array]) -> Array:
-    first, *others = expr.args
-    total = value_of(first, values)
-    for term in others:
-        total = total + value_of(term, values)
-    return total
-
-
 def _product(expr: Any, values: Mapping[str, Array]) -> Array:
     """Factors, then divisors: 1/x is a division here as it is where it is printed."""
     top: Any = None
@@ -266,16 +260,13 @@ def _function(function: Callable[..., Any]) -> Callable[[Any, Mapping[str, Array
     return lambda expr, values: np.asarray(function(*(value_of(a, values) for a in expr.args)))
 
 
-def _least(expr: Any, values: Mapping[str, Array]) -> Array:
-    """The least of several; not a number where one is none."""
-    first, *others = (value_of(a, values) for a in expr.args)
-    for other in others:
-        first = np.minimum(first, other)
-    return first
+def _of_two(function: Callable[..., Any]) -> Callable[[Any, Mapping[str, Array]], Array]:
+    """The function of the first two arguments, then of what it gives and the next."""
+    return lambda expr, values: reduce(function, (value_of(a, values) for a in expr.args))
 
 
 _RULES: dict[Any, Callable[[Any, Mapping[str, Array]], Array]] = {
-    sp.Add: _sum,
+    sp.Add: _of_two(operator.add),
     sp.Mul: _product,
     sp.Pow: _signed_power,
     sp.sin: _function(np.sin),
@@ -283,5 +274,5 @@ _RULES: dict[Any, Callable[[Any, Mapping[str, Array]], Array]] = {
     sp.acos: _function(np.arccos),
     sp.atan2: _function(np.arctan2),
     sp.Abs: _function(np.abs),
-    sp.Min: _least,
+    sp.Min: _of_two(np.minimum),  # not a number where one is none
 }

@@ -89,7 +89,9 @@ class Interpreter:
         for step in function.steps:
             state.do(step)
         outputs = [np.array(state.values[o.name]) for o in function.outputs]
-        status = state.finished([judged(o, unbounded=function.unbounded) for o in outputs])
+        for array in outputs:  # what is not finite is at least INVALID
+            state.flag(~finite(judged(array, unbounded=function.unbounded)), Status.INVALID)
+        status = state.status
         for array in outputs:
             array[status != Status.OK] = np.nan
         return Answer(tuple(outputs), status)
@@ -160,12 +162,6 @@ class _State:
             self.values[target.name] = result
             lost = ~finite(judged(result, unbounded=operation.unbounded))
             self.flag(known & lost, operation.status)
-
-    def finished(self, outputs: Sequence[Array]) -> NDArray[np.int_]:
-        """Status of every state: what is not finite is at least INVALID."""
-        for array in outputs:
-            self.flag(~finite(array), Status.INVALID)
-        return self.status
 
     # ---- searches ----------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.program.ir import VECTORS, Block, Check, Function, Program, Store
+from pne_sym.program.slices import places_of
 
 _FUNCTIONS = (sp.sin, sp.cos, sp.atan2, sp.acos, sp.Abs, sp.Min)
 _ROOTS = (sp.Rational(1, 2), sp.Rational(-1, 2))
@@ -133,11 +134,10 @@ class _Scope:
             self.introduce(symbol, "")
 
     def _write(self, store: Store) -> None:
-        shape, column = self.shapes[store.array], 0 if store.column is None else store.column
-        count = max(len(i) if isinstance(i, tuple) else 1 for i in (store.row, column))
-        rows, columns = (i if isinstance(i, tuple) else (i,) * count for i in (store.row, column))
-        self.require(len(rows) == len(columns), f"{store.array}: uneven tables of places")
-        for place in zip(rows, columns, strict=True):
+        shape, tables = self.shapes[store.array], (store.row, store.column)
+        legs = {len(i) for i in tables if isinstance(i, tuple)} or {1}
+        self.require(len(legs) == 1, f"{store.array}: uneven tables of places")
+        for place in places_of(store, *legs):
             where = f"{store.array}{list(place)}"
             inside = all(0 <= i < n for i, n in zip(place, (*shape, 1), strict=False))
             self.require(inside, f"{where} is outside the shape {shape}")
