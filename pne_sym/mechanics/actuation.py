@@ -122,8 +122,8 @@ def _force_rank(m: Manipulator) -> int:
 
 def _samples(m: Manipulator) -> Iterator[Manipulator]:
     """Geometries and poses of the same structure, each as a manipulator whose home it is."""
-    rng, home = np.random.default_rng(0), mobility(m)
     yield m
+    rng, home = np.random.default_rng(0), mobility(m)
     for points, frames in ((False, False), (True, False), (False, True), (True, True)):
         geometry = _changed(m, rng, points=points, frames=frames) if points or frames else m
         start = _closed(geometry, np.array(m.home.X), np.array(m.home.q))
