@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pne_sym.derivation import (
-    Book,
-    Coordinates,
-    Derivation,
-    NameTakenError,
-)
+from pne_sym.derivation import Book, Coordinates, Derivation, NameTakenError
 from pne_sym.mechanics.actuation import actuation, check_dependence
 from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.energy import write_dissipation, write_potential

@@ -136,7 +136,9 @@ class DynamicsWriter:
         G, G_m = self._force_balance(gamma), self._moment_balance(gamma)
         force = self._named("c", -(G + found.turning))
         form = self.motion.known.get(force, LinearForm({}, ZeroVector))
-        Q = self._inertia(form)
+        Q, a_p = ZeroTensor, self.motion.a_p
+        if a_p in form.coefficients:
+            Q = self.eq("Q", -form.coefficients[a_p])
         moment = self._named("c_m", -(G_m + self.forces.end))
         U = ZeroVector
         if form.remainder != ZeroVector:
@@ -184,13 +186,6 @@ class DynamicsWriter:
             if coefficient != 0:
                 moments.append(n * self.eq.collected("G_m#", coefficient, k))
         return self._named("G_m", vector_sum(moments))
-
-    def _inertia(self, form: LinearForm) -> Any:
-        """Q, the coefficient of the connection point's acceleration in the leg's force."""
-        a_p = self.motion.a_p
-        if a_p not in form.coefficients:
-            return ZeroTensor
-        return self.eq("Q", -form.coefficients[a_p])
 
     def _extra_row(self, j: int, gamma: dict[int, Any], G: Any, G_m: Any) -> tuple[Any, LinearForm]:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""

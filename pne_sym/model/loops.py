@@ -6,14 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pne_sym.model.closure import (
-    Flags,
-    least_norm,
-    leg_closed,
-    leg_residual,
-    solve,
-    unreachable,
-)
+from pne_sym.model.closure import Flags, least_norm, leg_closed, leg_residual, solve, unreachable
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, slices_of
 from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space, Vector3
 
