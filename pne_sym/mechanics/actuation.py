@@ -145,9 +145,8 @@ def _is_alike(sample: Manipulator, home: Mobility) -> bool:
 def _size(m: Manipulator) -> float:
     """A length of the mechanism."""
     points = [p for leg in m.legs for p in (leg.base_point, leg.platform_point)]
-    offsets = [joint.offset for joint in m.joints]
-    shifts = [leg.platform_joint.offset for leg in m.legs]
-    lengths = np.linalg.norm([*points, *offsets, *shifts], axis=1)
+    offsets = [offset for leg in m.legs for offset in leg.offsets]
+    lengths = np.linalg.norm([*points, *offsets], axis=1)
     return float(lengths.max()) or 1.0
 
 

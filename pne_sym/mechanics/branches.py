@@ -65,10 +65,9 @@ def _values_at(g: LegGeometry, row: int, q: Array, base_R_platform: Array) -> di
     # Axes as their joints leave them: rotation by x about e maps e to itself.
     axes = [R @ np.array(joint.axis) for R, joint in zip(spec[1:], leg.joints, strict=True)]
     values: dict[str, Any] = {g.e[j].name: axis for j, axis in enumerate(axes, 1)}
-    offsets = [*(joint.offset for joint in leg.joints), leg.platform_joint.offset]
     for j, vector in g.offset.items():
         if hasattr(vector, "name"):
-            values[vector.name] = spec[j - 1] @ np.array(offsets[j - 1])
+            values[vector.name] = spec[j - 1] @ np.array(leg.offsets[j - 1])
     values[g.name("S")] = chain.tip
     values |= {g.pitch[j].name: leg.joints[j - 1].pitch for j in g.pitch}
     leg_R_platform = np.array(leg.base_frame).T @ base_R_platform

@@ -12,6 +12,7 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, FailureStatus
+from pne_sym.mechanics.directions import AXES, unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.reciprocal_wrenches import (
     Column,
@@ -82,8 +83,7 @@ def plane_normal(book: Book, g: LegGeometry) -> Vector:
         return turning[0]
     normal = VectorSymbol(g.name("n_plane"))
     if normal.name not in book.notation:
-        along_z = sp.S.Zero, sp.S.Zero, sp.S.One
-        Writer(book, g, _TERMS).give("n_plane", along_z)
+        Writer(book, g, _TERMS).give("n_plane", unit(AXES[2]))
     return normal
 
 

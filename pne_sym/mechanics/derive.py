@@ -4,18 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pne_sym.derivation import (
-    Book,
-    Coordinates,
-    Derivation,
-    NameTakenError,
-)
+from pne_sym.derivation import Book, Coordinates, Derivation, NameTakenError
 from pne_sym.mechanics.actuation import actuation, check_dependence
 from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.energy import write_dissipation, write_potential
 from pne_sym.mechanics.joint_limits import write_efforts, write_margins
 from pne_sym.mechanics.leg_derivation import derive_leg
-from pne_sym.mechanics.leg_outputs import starts
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.lumping import write_inertia
 from pne_sym.mechanics.mobility import check_solvable, mobility
@@ -26,7 +20,7 @@ from pne_sym.mechanics.platform_dynamics import PlatformWriter
 from pne_sym.mechanics.platform_motion import introduce_platform
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import leg_types
-from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
+from pne_sym.model.kinematics import TASK_SPACES, TaskSpace, slices_of
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import ZeroVector
 
@@ -70,7 +64,7 @@ def _derive(book: Book, manipulator: Manipulator) -> Derivation:
     write_dissipation(book, legs)
     write_motors(book, manipulator, legs)
     for leg in legs:
-        write_margins(book, leg.g, leg.motion.chain.q, starts(manipulator))
+        write_margins(book, leg.g, leg.motion.chain.q, slices_of(manipulator.legs))
         write_efforts(book, leg.g, _actuators(manipulator))
     write_lengths(book, [leg.g for leg in legs])
     book.coordinates = _coordinates(manipulator, space, legs)

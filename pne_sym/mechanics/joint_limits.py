@@ -35,14 +35,16 @@ _TEXT = (
 _HINGES = " Full turns of a hinge do not count."
 
 
-def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequence[int]) -> None:
+def write_margins(
+    book: Book, g: LegGeometry, q: Mapping[int, Any], places: Sequence[slice]
+) -> None:
     """The chapter on the limits of a leg's joints, where there are any.
 
     Args:
         book: of the derivation.
         g: of the leg.
         q: displacements by joint.
-        starts: where the joints of each leg begin in q.
+        places: where the joints of each leg stand in q.
     """
     limited = [j for j, joint in enumerate(g.leg_type.model.joints, 1) if joint.has_stroke]
     if not limited:
@@ -58,7 +60,7 @@ def write_margins(book: Book, g: LegGeometry, q: Mapping[int, Any], starts: Sequ
         off = sp.atan2(sp.sin(off), sp.cos(off)) if wraps[j] else off
         off = write("off_#", off, j)
         margin = write("margin_#", half - sp.sqrt(write("off2_#", off**2, j)), j)
-        rows = tuple(starts[i] + j - 1 for i in g.leg_type.indices)
+        rows = tuple(places[i].start + j - 1 for i in g.leg_type.indices)
         book.outputs.append(Output("margins", margin, ((0, 0),), (), g.leg_type.name, rows))
 
 

@@ -38,7 +38,9 @@ class BalanceWriter:
 
     def write(self) -> dict[int, Any]:
         """Gamma_j of every joint."""
-        g, inertia = self.g, self._joint_inertia()
+        g, inertia = self.g, {}
+        if g.composite:  # inertia of joint k along joint j
+            inertia = CompositeWriter(self.book, self.chain, self.links.bodies).inertia()
         groups = sorted({0, *g.group.values()}, reverse=True)
         force: Any = ZeroVector  # inertia force of all groups beyond
         moment: Any = ZeroVector  # their moment about the next group's origin
@@ -54,12 +56,6 @@ class BalanceWriter:
                 component = Dot(g.spin(group), moment) + Dot(g.slide(group), force)
                 gamma[group] = self._along(group, component, inertia)
         return gamma
-
-    def _joint_inertia(self) -> dict[tuple[int, int], Any]:
-        """Inertia of joint k along joint j, where the leg's inertia is collected so."""
-        if not self.g.composite:
-            return {}
-        return CompositeWriter(self.book, self.chain, self.links.bodies).inertia()
 
     def _moment(self, group: int, members: Sequence[int], force: Any, moment: Any) -> Any:
         """Moment about the group's origin of everything from the group outwards."""

@@ -22,7 +22,7 @@ from pne_sym.mechanics.leg_balance import BalanceWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
 from pne_sym.mechanics.linear_writer import LinearWriter
-from pne_sym.mechanics.link_forces import LinkForces, LinkWriter
+from pne_sym.mechanics.link_forces import LinkWriter
 from pne_sym.mechanics.links import LinkBody
 from pne_sym.mechanics.terms import glossary
 from pne_sym.vector import Dot, LinearForm, ZeroTensor, ZeroVector, vector_sum
@@ -136,17 +136,22 @@ class DynamicsWriter:
         G, G_m = self._force_balance(gamma), self._moment_balance(gamma)
         force = self._named("c", -(G + found.turning))
         form = self.motion.known.get(force, LinearForm({}, ZeroVector))
-        Q = self._inertia(form)
+        Q, a_p = ZeroTensor, self.motion.a_p
+        if a_p in form.coefficients:
+            Q = self.eq("Q", -form.coefficients[a_p])
         moment = self._named("c_m", -(G_m + self.forces.end))
         U = ZeroVector
         if form.remainder != ZeroVector:
             U = self.eq("U", -form.remainder)
+        true_force = force
+        if found.tip_force != ZeroVector:  # the mass at the tip moves with the platform
+            true_force = self.eq("c_true", force - found.tip_force)
         return LegDynamics(
             bodies=self.links.bodies,
             tip_mass=found.tip_mass,
             forces=self.forces,
             force=force,
-            true_force=self._true_force(force, found),
+            true_force=true_force,
             Q=Q,
             U=U,
             form=form,
@@ -181,19 +186,6 @@ class DynamicsWriter:
             if coefficient != 0:
                 moments.append(n * self.eq.collected("G_m#", coefficient, k))
         return self._named("G_m", vector_sum(moments))
-
-    def _inertia(self, form: LinearForm) -> Any:
-        """Q, the coefficient of the connection point's acceleration in the leg's force."""
-        a_p = self.motion.a_p
-        if a_p not in form.coefficients:
-            return ZeroTensor
-        return self.eq("Q", -form.coefficients[a_p])
-
-    def _true_force(self, force: Any, found: LinkForces) -> Any:
-        """The leg's force with the mass at the tip."""
-        if found.tip_force == ZeroVector:
-            return force
-        return self.eq("c_true", force - found.tip_force)
 
     def _extra_row(self, j: int, gamma: dict[int, Any], G: Any, G_m: Any) -> tuple[Any, LinearForm]:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""

@@ -20,7 +20,7 @@ import sympy as sp
 from pne_sym.derivation import Book, Frame
 from pne_sym.mechanics.directions import AXES, is_exact, pattern_of, unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.leg_parameters import LegParameters, offset_of
+from pne_sym.mechanics.leg_parameters import LegParameters
 from pne_sym.mechanics.platform_directions import PlatformDirections
 from pne_sym.mechanics.structure import TOLERANCE, LegType
 from pne_sym.mechanics.terms import Writer, glossary
@@ -118,7 +118,7 @@ class _Frames:
         found += [self._across(j, z) for j in following]
         axes = []
         for j in [j + 1 for j in members]:
-            along = [i for i, v in enumerate(offset_of(self.type, j)) if v != 0.0]
+            along = [i for i, v in enumerate(self.type.model.offsets[j - 1]) if v != 0.0]
             axes += [AXES[along[0]]] if len(along) == 1 else []
         tiles = self.type.count, 1
         return found + [(unit(axis), np.tile(axis, tiles)) for axis in (*axes, *AXES)]

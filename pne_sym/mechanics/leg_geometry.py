@@ -178,9 +178,7 @@ class LegGeometry:
         """Which canonical components of offset j vanish by structure."""
         if group not in self.exact_frames:
             return (False, False, False)
-        leg = self.leg_type.model
-        value = (*(x.offset for x in leg.joints), leg.platform_joint.offset)[j - 1]
-        local = self.canonical[group][0].T @ np.array(value)
+        local = self.canonical[group][0].T @ np.array(self.leg_type.model.offsets[j - 1])
         return tuple(bool(v == 0.0) for v in local)  # type: ignore[return-value]
 
     def perpendicular(self, j: int, k: int) -> bool:

@@ -8,7 +8,7 @@ from pne_sym.derivation import Book, Output
 from pne_sym.mechanics.leg_displacements import InverseKinematics
 from pne_sym.mechanics.legs import Leg
 from pne_sym.mechanics.terms import Writer, glossary
-from pne_sym.model.kinematics import TaskSpace
+from pne_sym.model.kinematics import TaskSpace, slices_of
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Dot, ZeroVector
 
@@ -22,9 +22,9 @@ def joint_outputs(
     book: Book, manipulator: Manipulator, leg: Leg, inverse: InverseKinematics
 ) -> None:
     """Displacements, rates and accelerations of the joints; the leg's force."""
-    first, indices = starts(manipulator), leg.g.leg_type.indices
+    slices, indices = slices_of(manipulator.legs), leg.g.leg_type.indices
     for j in range(1, leg.g.count + 1):
-        rows = tuple(first[i] + j - 1 for i in indices)
+        rows = tuple(slices[i].start + j - 1 for i in indices)
         values = {"q": inverse.q.get(j), "qd": leg.motion.qd[j], "qdd": leg.motion.qdd[j]}
         for array, value in values.items():
             if value is not None:
@@ -35,11 +35,6 @@ def joint_outputs(
             book.outputs.append(
                 Output("leg_force", vector, ((0, 0),), columns, leg.name, tuple(indices))
             )
-
-
-def starts(manipulator: Manipulator) -> list[int]:
-    """Where the joints of each leg begin in q."""
-    return [sum(len(m.joints) for m in manipulator.legs[:i]) for i in range(len(manipulator.legs))]
 
 
 def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:

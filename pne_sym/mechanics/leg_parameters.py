@@ -14,10 +14,9 @@ from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.directions import unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.live import END, LEG, Demands, Place, note, of_legs
-from pne_sym.mechanics.structure import LegType, is_coordinate
+from pne_sym.mechanics.structure import is_coordinate
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.model.kinematics import Array, chain_pose
-from pne_sym.model.manipulator import Vector3
 from pne_sym.vector import ZeroVector
 
 _TERMS = glossary(r"""
@@ -93,7 +92,7 @@ class LegParameters:
     def offsets(self) -> None:
         """From joint to joint, and to the connection point."""
         for j in range(1, self.g.count + 2):
-            zeros = tuple(i for i, v in enumerate(offset_of(self.type, j)) if v == 0.0)
+            zeros = tuple(i for i, v in enumerate(self.type.model.offsets[j - 1]) if v == 0.0)
             if len(zeros) == 3:
                 self.g.offset[j] = ZeroVector
                 continue
@@ -101,9 +100,3 @@ class LegParameters:
             components = self.field("offset", at, zeros=zeros)
             frame, what = self.g.frame("spec", self.g.group[j - 1]), at.word
             self.g.offset[j] = self.eq.give("d_#", components, j, j - 1, what, frame=frame)
-
-
-def offset_of(leg_type: LegType, j: int) -> Vector3:
-    """Of joint j of the leg type's model; beyond the last one, of the platform joint."""
-    model = leg_type.model
-    return (*(joint.offset for joint in model.joints), model.platform_joint.offset)[j - 1]

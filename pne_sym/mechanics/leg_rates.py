@@ -103,18 +103,15 @@ class RateWriter:
             following = rods[j] = self._rod(j, following)
         reached = vector_sum((chain.spans[0], following))
         screws = ScrewWriter(self.book, chain, planar=self.space.planar)
-        found = screws.write(rods, ZeroVector if self._closes else self.inverse.S - reached)
+        # Three joints with a closed form leave no residual but that of right angles.
+        closes = self.inverse.is_closed and g.pairs and self._dofs == 3
+        found = screws.write(rods, ZeroVector if closes else self.inverse.S - reached)
         return self._angular_velocities(found, S_dot, self._rates(found, S_dot))
 
     @property
     def _dofs(self) -> int:
         """Joints that are not extra."""
         return self.g.count - len(self.chain.extras)
-
-    @property
-    def _closes(self) -> bool:
-        """Three joints with a closed form leave no residual but that of right angles."""
-        return bool(self.inverse.is_closed and self.g.pairs and self._dofs == 3)
 
     def _rod(self, j: int, following: Vector) -> Vector:
         """From the origin of turning joint j to the connection point."""

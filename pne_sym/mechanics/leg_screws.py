@@ -12,11 +12,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book
-from pne_sym.mechanics.constraints import (
-    constraint_directions,
-    constraint_wrenches,
-    plane_normal,
-)
+from pne_sym.mechanics.constraints import constraint_directions, constraint_wrenches, plane_normal
 from pne_sym.mechanics.leg_chain import LegChain
 from pne_sym.mechanics.reciprocal_wrenches import (
     Column,

@@ -145,10 +145,12 @@ class LinkWriter:
         members = [b for b in self.bodies if b.group == group]
         if not members or group == 0:
             return ZeroVector
-        J, second = self._group_inertia(group, members)
+        J = self.eq.named("J_group_#", tensor_sum(b.inertia for b in members), group)
+        second = self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group)
         turns = self.motion.groups[group]
         omega, alpha = turns.omega, turns.alpha
-        both = [(acceleration[b.joint], self._rest(acceleration[b.joint])) for b in members]
+        rest = self.motion.collection.rest
+        both = [(acceleration[b.joint], rest(acceleration[b.joint])) for b in members]
         moments, at_rest = (
             [Cross(b.first_moment, a[k]) for b, a in zip(members, both, strict=True)]
             for k in (0, 1)
@@ -163,11 +165,6 @@ class LinkWriter:
             rest_forms=tuple(vector_sum((turning_rest, *terms)) for _, terms in ways),
             collected=not self.g.composite,
         )
-
-    def _group_inertia(self, group: int, members: Sequence[LinkBody]) -> tuple[Any, Any]:
-        """Inertia tensor J of a group's links, each about its reference point; tr(J)/2 E - J."""
-        J = self.eq.named("J_group_#", tensor_sum(b.inertia for b in members), group)
-        return J, self.eq("Sigma_#", Trace(J) / 2 * Identity - J, group)
 
     def _gathered_moments(
         self, members: Sequence[LinkBody], acceleration: dict[int, Any]
@@ -200,8 +197,5 @@ class LinkWriter:
             return ZeroVector, ZeroVector
         terms = [t for t in getattr(equation.rhs, "args", ()) if t != -self.gravity]
         plain = vector_sum(terms) if len(terms) == 1 else None
-        return (plain, self._rest(plain)) if isinstance(plain, VectorSymbol) else None
-
-    def _rest(self, symbol: Any) -> Any:
-        """Remainder of a quantity at zero acceleration."""
-        return self.motion.collection.rest(symbol)
+        rest = self.motion.collection.rest
+        return (plain, rest(plain)) if isinstance(plain, VectorSymbol) else None

@@ -125,18 +125,16 @@ def check_mobility(manipulator: Manipulator) -> Mobility:
         )
     elif found.unheld > found.passive:
         free = _count(found.unheld - found.passive, "degree of freedom", "degrees of freedom")
-        problem = (
-            f"all actuators held, the mechanism can move at home ({free}): H is singular there"
-        )
-    if found.overconstrained:
-        dependent = (
-            f"overconstrained: of the {found.constraints} constraints that the legs put on the "
-            f"platform, {found.overconstrained} follow from the others; motion and actuator forces "
-            "are determined, lambda and the reactions are those of least norm"
-        )
-        warnings.warn(f"{manipulator.name}: legs: {dependent}", SpecWarning, stacklevel=2)
-    if problem:
-        warnings.warn(f"{manipulator.name}: legs: {problem}", SpecWarning, stacklevel=2)
+        problem = f"all actuators held, the mechanism can move at home ({free}): "
+        problem += "H is singular there"
+    dependent = (
+        f"overconstrained: of the {found.constraints} constraints that the legs put on the "
+        f"platform, {found.overconstrained} follow from the others; motion and actuator forces "
+        "are determined, lambda and the reactions are those of least norm"
+    )
+    for what in (dependent * bool(found.overconstrained), problem):
+        if what:
+            warnings.warn(f"{manipulator.name}: legs: {what}", SpecWarning, stacklevel=2)
     return found
 
 

@@ -64,7 +64,7 @@ class PlatformDirections:
         a = self.eq.give("end_axis", axis)
         k = across(self.type)
         d = self.eq.give("end_across", unit(AXES[k]), "xyz"[k])
-        w = self._platform_direction(0, platform)
+        w = self.eq.give("end_p#", platform, 1)
         side = Cross(a, d)
         first = self.eq("end_l#:across", side / norm(side), 1)
         self.g.pairs.append((first, w))
@@ -79,14 +79,11 @@ class PlatformDirections:
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
         u = self.eq.give("end_l#", link, k + 1)
-        self.g.pairs.append((u, self._platform_direction(k, platform)))
+        self.g.pairs.append((u, self.eq.give("end_p#", platform, k + 1)))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or AXES[k])
         self.pattern = pattern_of(
             np.einsum("lji,lj->li", self.g.canonical[self.g.group[self.g.count]], values)
         )
-
-    def _platform_direction(self, k: int, components: Any) -> Any:
-        return self.eq.give("end_p#", components, k + 1)
 
 
 def _components(direction: Direction, stated: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -16,6 +16,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Condition, FailureStatus, ReciprocalBasis
 from pne_sym.mechanics.completion import Auxiliary, Kind
+from pne_sym.mechanics.directions import AXES, unit
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.terms import Writer, glossary
 from pne_sym.vector import (
@@ -181,8 +182,7 @@ def direction(book: Book, g: LegGeometry, axis: int) -> VectorSymbol:
     """A coordinate direction of the last link."""
     symbol = VectorSymbol(g.name(f"a_c{axis + 1}"))
     if symbol.name not in book.notation:
-        components = (sp.Integer(int(i == axis)) for i in range(3))
-        Writer(book, g, _TERMS).give("a_c#", components, axis + 1)
+        Writer(book, g, _TERMS).give("a_c#", unit(AXES[axis]), axis + 1)
     return symbol
 
 

@@ -87,9 +87,8 @@ def _unusual(leg: Leg, middle: Array, q: Array, size: float) -> tuple[float, ...
 
 def _size(leg: Leg, pose: Pose) -> float:
     """A length of the leg: its links' or the way from end to end, m."""
-    links = [*(joint.offset for joint in leg.joints), leg.platform_joint.offset]
     reach = pose.t + pose.R @ np.array(leg.platform_point) - np.array(leg.base_point)
-    size = max(float(np.linalg.norm(reach)), *(float(np.linalg.norm(link)) for link in links))
+    size = max(float(np.linalg.norm(reach)), *(float(np.linalg.norm(link)) for link in leg.offsets))
     return size if size > 0.0 else 1.0
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -204,12 +205,14 @@ def chain_pose(leg: Leg, q: Sequence[float] | Array, start: Pose = ORIGIN) -> Ch
 
 def at_home(manipulator: Manipulator) -> tuple[Pose, list[Array]]:
     """The platform's pose, and the displacements of every leg."""
-    m, start, displacements = manipulator, 0, []
-    for leg in m.legs:
-        end = start + len(leg.joints)
-        displacements.append(np.array(m.home.q[start:end]))
-        start = end
-    return pose_at(m.space, m.home.X, m.fixed_centre), displacements
+    m, q = manipulator, np.array(manipulator.home.q)
+    return pose_at(m.space, m.home.X, m.fixed_centre), [q[s] for s in slices_of(m.legs)]
+
+
+def slices_of(legs: Sequence[Leg]) -> list[slice]:
+    """Where each leg's displacements stand in q."""
+    ends = np.cumsum([0, *(len(leg.joints) for leg in legs)]).tolist()
+    return [slice(a, b) for a, b in pairwise(ends)]
 
 
 def base_of(leg: Leg) -> Pose:

@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
-from pne_sym.model.closure import (
-    Flags,
-    least_norm,
-    leg_closed,
-    leg_residual,
-    solve,
-    unreachable,
-)
-from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
+from pne_sym.model.closure import Flags, least_norm, leg_closed, leg_residual, solve, unreachable
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, slices_of
 from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space, Vector3
 
 
@@ -77,8 +69,7 @@ class Loops:
 
     def slices(self) -> list[slice]:
         """Where each leg's displacements stand in q."""
-        ends = np.cumsum([0, *(len(leg.joints) for leg in self.legs)]).tolist()
-        return [slice(a, b) for a, b in pairwise(ends)]
+        return slices_of(self.legs)
 
     def closures(self, X: Array, q: Array) -> list[tuple[Array, Array, Array]]:
         """Each leg's residual, and its Jacobians by its displacements and by the free twist."""

@@ -187,6 +187,11 @@ class Leg:
     type: str = ""
     name: str = ""
 
+    @property
+    def offsets(self) -> list[Vector3]:
+        """Of the joints, then of the platform joint."""
+        return [*(joint.offset for joint in self.joints), self.platform_joint.offset]
+
 
 @dataclass(frozen=True)
 class Home:
