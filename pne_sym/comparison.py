@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pne_sym.contents import MODEL_NAME, Contents, check_names
+from pne_sym.contents import MODEL_NAME, Contents, check_names, folders_of, read_file
 from pne_sym.writer import readable_errors
 
 
@@ -28,7 +28,7 @@ class Difference:
     Attributes:
         path: the file, below the output folder.
         kind: missing; stale (would not be generated); or changed.
-        diff: unified diff from the file to what would be generated
+        diff: unified diff from the file to what would be generated, of a link a line that says so
             (changed files only), otherwise empty.
     """
 
@@ -65,8 +65,11 @@ def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Differen
                 differences.append(Difference(path, DifferenceKind.MISSING))
             elif file not in files:
                 differences.append(Difference(path, DifferenceKind.STALE))
-            elif (found := (folder / file).read_bytes()) != files[file].encode("utf-8"):
-                diff = _unified_diff(out / path, found, files[file])
+            elif (found := read_file(folder / file)) != files[file].encode("utf-8"):
+                # What a stranger's link leads to is nobody's to read in a log.
+                linked = any((folder / part).is_symlink() for part in [*folders_of(file), file])
+                told = f"{out / path}: a link leads elsewhere; what stands there is not shown\n"
+                diff = told if linked else _unified_diff(out / path, found, files[file])
                 differences.append(Difference(path, DifferenceKind.CHANGED, diff))
     return differences
 

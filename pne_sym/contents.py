@@ -8,6 +8,7 @@ targets that the manifest names. Any other is, if it begins with the signature o
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -48,6 +49,18 @@ def folders_of(file: str) -> list[str]:
     """
     parts = file.split("/")[:-1]
     return ["/".join(parts[: k + 1]) for k in range(len(parts))]
+
+
+def read_file(path: Path, size: int = -1) -> bytes:
+    """What a file begins with, or all of it.
+
+    Raises:
+        OSError: it cannot be read, or is a pipe or device, for which one could wait for ever.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise OSError(errno.EINVAL, "Not a regular file", str(path))
+    with path.open("rb") as stream:
+        return stream.read(size)
 
 
 class Contents:
@@ -123,12 +136,11 @@ def recorded_targets(manifest: Mapping[str, Any]) -> tuple[str, ...]:
 def _manifest(path: Path) -> Mapping[str, Any]:
     """The manifest as it stands, or nothing."""
     with contextlib.suppress(OSError, ValueError, RecursionError):
-        manifest = json.loads(path.read_bytes())
+        manifest = json.loads(read_file(path))
         return manifest if isinstance(manifest, dict) else {}
     return {}
 
 
 def _has_header(path: Path) -> bool:
     """Whether a file says that this package wrote it."""
-    with path.open("rb") as stream:
-        return is_signed(stream.read(SIGNED_BYTES))
+    return is_signed(read_file(path, SIGNED_BYTES))
