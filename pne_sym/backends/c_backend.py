@@ -19,7 +19,7 @@ from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_operations import OPERATIONS, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_parts import least_values
 from pne_sym.backends.c_public import Caller, c_functions
-from pne_sym.backends.c_sizes import count_of, sizes_of
+from pne_sym.backends.c_sizes import count_of, one_state, sizes_of
 from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_stage_texts import stage_texts
 from pne_sym.backends.c_stages import Stages
@@ -65,6 +65,7 @@ class CView:
         texts: all functions.
         sizes: name -> number.
         least: what is not singular is larger -> name.
+        narrow: how functions of one state are declared, where that is said.
         lanes: number of states that run side by side.
     """
 
@@ -83,6 +84,7 @@ class CView:
     texts: tuple[str, ...]
     sizes: dict[str, str]
     least: dict[str, str]
+    narrow: str
     lanes: int = LANES
 
 
@@ -138,6 +140,7 @@ def _view(bundle: Bundle) -> CView:
         texts=tuple(texts),
         sizes=_sizes(bundle),
         least=least_values(bundle),
+        narrow=one_state(bundle),
     )
 
 

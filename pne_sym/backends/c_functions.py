@@ -9,7 +9,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_leg_parts import LegParts
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
-from pne_sym.backends.c_sizes import array_names, count_of, times
+from pne_sym.backends.c_sizes import array_names, count_of, one_state, times
 from pne_sym.backends.c_stages import Stages
 from pne_sym.backends.c_statements import vector_name
 from pne_sym.backends.c_text import (
@@ -95,7 +95,7 @@ class FunctionWriter:
         self.before, self.between = once.of(self.before), once.of(self.between)
         self.legs = [(b, over, once.of(place)) for b, over, place in self.legs]
         self.after = once.of(self.after) if self.after else None
-        one = self._run("1", self._kind(single))
+        one = self._run("1", one_state(self.bundle, self._kind(single)))
         lanes = self._run("LANES", self._kind(many)) if many else None
         lines += [*self._sizes(one), *one.definition()]
         lines += ["", *lanes.definition()] if lanes else []

@@ -40,6 +40,16 @@ def count_of(leg_type: str) -> str:
     return f"LEGS_OF_{leg_type}"
 
 
+FEW = 4
+"""Legs of a type whose numbers fill half of the longest vector."""
+
+
+def one_state(bundle: Bundle, kind: str = "") -> str:
+    """How functions of one state are declared: where legs are few, they keep to short vectors."""
+    short = "NARROW" * (max(bundle.leg_counts.values()) <= FEW)
+    return f"{short} {kind}".strip() if kind != "INLINE" else kind
+
+
 def times(*factors: str | int) -> str:
     """A product.
 

@@ -22,7 +22,7 @@ from pne_sym.backends.c_operations import (
 )
 from pne_sym.backends.c_repeated import repeated
 from pne_sym.backends.c_results import Results
-from pne_sym.backends.c_sizes import Sizes, times
+from pne_sym.backends.c_sizes import Sizes, one_state, times
 from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_solves import Solves
 from pne_sym.backends.c_text import (
@@ -89,7 +89,8 @@ class Steps:
             return Routine.of(f"{self.f.name}_lanes", parameters, body)
         if "weights" not in self.arrays.read and self.f.is_exported:
             return self._called_by_users(body)
-        one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, "static")
+        kind = one_state(self.bundle, "static")
+        one = Routine.of(f"{self.f.name}_one", self._parameters(self.f.inputs), body, kind)
         return replace(one, result="int")
 
     def _begun(self) -> list[str]:
@@ -120,7 +121,7 @@ class Steps:
             if a.name in WITHOUT and a.name in words:
                 lines.append(f"const real *{a.name} = NULL;")
         name = f"{self.bundle.name}_{self.f.name}"
-        return Routine(name, tuple(parameters), (*lines, *body), "", "int")
+        return Routine(name, tuple(parameters), (*lines, *body), one_state(self.bundle), "int")
 
     # ---- steps -------------------------------------------------------------------------------
 

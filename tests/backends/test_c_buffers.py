@@ -27,7 +27,9 @@ def rows(name: str, size: str) -> set[int]:
 def routines(name: str) -> dict[str, str]:
     """Name -> text, of a model's routines."""
     text = text_of(name)
-    return dict(re.findall(r"^\w+ void (\w+)\(([^;{]*\n\{.*?)^\}", text, re.MULTILINE | re.DOTALL))
+    return dict(
+        re.findall(r"^(?:\w+ )?\w+ void (\w+)\(([^;{]*\n\{.*?)^\}", text, re.MULTILINE | re.DOTALL)
+    )
 
 
 def called(name: str, body: str) -> set[str]:

@@ -55,7 +55,8 @@ def exported(number: int, of: PublicFunction, routine: Routine, *, lanes: bool) 
     head = f"void run_{number}{'_lanes' if lanes else ''}({parameters})"
     call = routine.call_with(dict.fromkeys(empty, "NULL"))
     definition = routine.definition()
-    definition[0] = f"static {definition[0]}" if not routine.kind else definition[0]
+    if not {"static", "INLINE"} & set(routine.kind.split()):
+        definition[0] = f"static {definition[0]}"
     return [*definition, f"{head};", f"{head} {{ {'' if lanes else '*code = '}{call} }}"]
 
 
