@@ -23,10 +23,11 @@ from pne_sym.backends.c_sizes import count_of, one_state, sizes_of
 from pne_sym.backends.c_solve import Eliminations
 from pne_sym.backends.c_stage_texts import stage_texts
 from pne_sym.backends.c_stages import Stages
+from pne_sym.backends.c_statements import Titles
 from pne_sym.backends.c_steps import Steps
 from pne_sym.backends.c_sums import with_common_sums
 from pne_sym.backends.c_support import needed
-from pne_sym.backends.c_text import Routine, wrapped
+from pne_sym.backends.c_text import Routine, indented, wrapped
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
 from pne_sym.program.ir import Closure, Function
@@ -78,7 +79,7 @@ class CView:
     home_q: str
     checks: tuple[str, ...]
     checked: str
-    prepare: tuple[str, ...]
+    prepare: str
     closures: tuple[CClosure, ...]
     support: str
     texts: tuple[str, ...]
@@ -121,7 +122,7 @@ def _view(bundle: Bundle) -> CView:
         "/* ---- one state, and batches ---- */",
         *("\n".join(user.definitions()) for user in users),
     ]
-    checks = tuple(parameter_checks(bundle))
+    checks, titles = tuple(parameter_checks(bundle)), Titles(bundle)
     operators = needed(support(bundle, biggest(bundle)), texts)
     home = bundle.coordinates.home
     return CView(
@@ -134,10 +135,10 @@ def _view(bundle: Bundle) -> CView:
         home_q=", ".join(map(number, map(str, home[1]))),
         checks=checks,
         checked=needed(render("c/checks.c.jinja"), (*checks, operators)),
-        prepare=tuple(prepare_body(bundle)),
+        prepare=titles.told("\n".join(indented(prepare_body(bundle)))),
         closures=closures,
         support=operators,
-        texts=tuple(texts),
+        texts=tuple(map(titles.told, texts)),
         sizes=_sizes(bundle),
         least=least_values(bundle),
         narrow=one_state(bundle),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_after import After
 from pne_sym.backends.c_leg_parts import LegParts
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
@@ -65,7 +66,7 @@ class FunctionWriter:
         self.places = [legs.place() for legs in self.over]
         self.legs: list[tuple[Block, Routine, Routine]] = []
         self.adding = [b for b in self.parts.legs if b.sums]
-        self.after = self.parts.after() if self.parts.last else None
+        self.behind, self.after = After(self.parts), Routine("", (), ())
         self.passed, self.sums = f"PASSED_IN_{self.name}", f"SUMS_OF_{self.name}"
 
     def routines(self) -> list[tuple[str, Routine]]:
@@ -73,7 +74,7 @@ class FunctionWriter:
         found = [self.before, self.between, *self.places]
         pieces = (p for legs in self.over for p in legs.pieces())
         found += [p.routine for p in pieces if p.routine]
-        found += [self.after] if self.after else []
+        found += [piece.routine for piece in self.behind.pieces]
         return [(f"any{r.name.removeprefix(self.name)}", r) for r in found]
 
     def text(self, once: Once, single: int, many: int) -> FunctionText:
@@ -89,14 +90,14 @@ class FunctionWriter:
             (legs.block, legs.over(once), place)
             for legs, place in zip(self.over, self.places, strict=True)
         ]
+        self.after = self.behind.routine(once)
         over = [r for _, *both in self.legs for r in both]
-        for routine in (self.before, self.between, *over, *([self.after] if self.after else [])):
+        for routine in (self.before, self.between, *over, self.after):
             lines += once.own(routine)
         self.before, self.between = once.of(self.before), once.of(self.between)
         self.legs = [(b, over, once.of(place)) for b, over, place in self.legs]
-        self.after = once.of(self.after) if self.after else None
         one = self._run("1", one_state(self.bundle, self._kind(single)))
-        lanes = self._run("LANES", self._kind(many)) if many else None
+        lanes = self._run("LANES", "APART" if self.adding else self._kind(many)) if many else None
         lines += [*self._sizes(one), *one.definition()]
         lines += ["", *lanes.definition()] if lanes else []
         return FunctionText("\n".join(lines), one, lanes)
@@ -128,8 +129,7 @@ class FunctionWriter:
             if not self.parts.is_full(a)
         ]
         body += self._one_state() if single else self._states()
-        if self.after:
-            body += _each(self.after, w, {"w": w})
+        body += _each(self.after, w, {"w": w})
         words = "\n".join(body)
         counts = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
         sizes = {"s": self.passed, "sums": self.sums}

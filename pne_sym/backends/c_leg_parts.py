@@ -24,7 +24,6 @@ from pne_sym.backends.c_statements import (
     vector_name,
 )
 from pne_sym.backends.c_text import Routine, statement
-from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Assignment, Block, Check, Store
 from pne_sym.program.slices import read_by, symbols
 
@@ -79,9 +78,9 @@ class LegParts:
         inputs = [i for i in self.f.leg_inputs.get(leg, ()) if i.symbol.name in reads]
         loads |= {i.symbol.name: leg_input(self.bundle, i, leg, tables) for i in inputs}
         lines = self._stages()
-        lines += statements(own, self.p.titles, self.here, loads)
+        lines += statements(own, self.here, loads)
         rows = [row for piece in self.pieces(loads) for row in piece.printed(once)]
-        lines += headed(rows, self.p.titles)
+        lines += headed(rows)
         parameters = [
             "const prepared *m",
             *(f"size_t {n}" for n in ("w", "i", "j", "k", "count")),
@@ -163,7 +162,7 @@ class LegParts:
     ) -> Piece:
         """Lines, and the routine of the same where they read what stages leave alone."""
         read = read_by(items)
-        body = headed(apart, equation_titles(self.bundle.derivation))
+        body = headed(apart)
         if not read <= self.members | self.prepared.keys() or len(body) < _LEAST:
             return Piece(here)
         parameters = [

@@ -17,7 +17,7 @@ from pne_sym.backends.c_text import (
     statement,
     words_of,
 )
-from pne_sym.backends.describe import equation_titles, field_views
+from pne_sym.backends.describe import field_views
 from pne_sym.derivation import ParameterField, Rule
 from pne_sym.program.ir import Block, Store
 from pne_sym.program.slices import symbols
@@ -77,65 +77,92 @@ def model_fields(bundle: Bundle) -> list[str]:
 # ---- preparation --------------------------------------------------------------------------
 
 
+class _Kept(Shared):
+    """Prints assignments of what is kept in the model where it is computed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.kept, self.leg = set[str](), False
+
+    def keep(self, block: Block, *, leg: bool) -> None:
+        """Keep what the block stores under its own name."""
+        self.leg = leg
+        self.kept |= {s.array for s in block.stores if _is_own(s)}
+
+    def assigned(self, name: str, value: str) -> str:
+        """A value given to its name, and to the model where it is kept."""
+        if name not in self.kept:
+            return super().assigned(name, value)
+        self.kept.remove(name)
+        return f"KEEP{'_OF_LEG' * self.leg}({c_name(name)}, {value})"
+
+
+def _is_own(store: Store) -> bool:
+    return str(store.value) == store.array
+
+
 class _Preparation:
     def __init__(self, bundle: Bundle) -> None:
         self.bundle = bundle
-        self.printer = Shared()
-        self.titles = equation_titles(bundle.derivation)
+        self.blocks = common_sums(bundle.program.prepare)
+        self.printer = _Kept()
 
     def body(self) -> list[str]:
         """Statements that compute the prepared model from the parameters."""
         lines: list[str] = []
-        blocks = common_sums(self.bundle.program.prepare)
-        totals = [str(s.target) for block in blocks for s in block.sums]
+        totals = [str(s.target) for block in self.blocks for s in block.sums]
         lines += [f"real {c_name(n)} = 0;" for n in dict.fromkeys(totals)]
-        shared = set().union(*(symbols(b) for b in blocks)) if blocks else set()
-        lines += self._parameters(shared, None)
-        for block in blocks:
+        for block in self.blocks:
+            if not block.leg_type:
+                self.printer.keep(block, leg=False)
+        lines += self._parameters(set[str]().union(*map(symbols, self.blocks)), None)
+        once = self.printer.kept
+        for block in self.blocks:
+            self.printer.kept = set() if block.leg_type else once
             lines += self._legs(block) if block.leg_type else self._once(block)
         return lines
 
     def _once(self, block: Block) -> list[str]:
-        lines = statements(block.assignments, self.titles, self.printer)
-        for store in block.stores:
-            lines.append(self._kept("KEEP", f"model->{c_name(store.array)}", store))
-        return lines
+        self.printer.leg = False
+        return [*statements(block.assignments, self.printer), *self._stored(block)]
 
     def _legs(self, block: Block) -> list[str]:
         leg = block.leg_type
+        self.printer.keep(block, leg=True)
         inner = self._parameters(symbols(block), leg)
-        inner += statements(block.assignments, self.titles, self.printer)
-        for store in block.stores:
-            inner.append(self._kept("KEEP_OF_LEG", f"model->{c_name(store.array)}[leg]", store))
+        inner += [*statements(block.assignments, self.printer), *self._stored(block)]
         count, legs = self.bundle.leg_counts[leg], count_of(leg)
         filled = capacity(count) > count
+        sums: list[str] = []
         for s in block.sums:
-            term = self.printer.text(s.expr)
-            inner += statement(
-                f"{c_name(str(s.target))} += {f'leg < {legs} ? {term} : 0' if filled else term}"
-            )
+            sums += statement(f"{c_name(str(s.target))} += {self.printer.text(s.expr)}")
+        inner += [f"if (leg < {legs}) {{", *indented(sums), "}"] if filled and sums else sums
         if "own" in words_of(inner):
             own = f"leg < {legs} ? leg : 0" if filled else "leg"
             inner.insert(0, f"const size_t own = {own};")
         every = f"FILLED({legs})" if filled else legs
         return [f"for (size_t leg = 0; leg < {every}; ++leg) {{", *indented(inner), "}"]
 
-    def _kept(self, macro: str, place: str, store: Store) -> str:
-        """A value kept in the model, mostly under its own name."""
-        name, value = c_name(store.array), self.printer.text(store.value)
-        return f"{macro}({name});" if value == name else f"{place} = {value};"
+    def _stored(self, block: Block) -> list[str]:
+        """What is kept and not yet in the model."""
+        lines: list[str] = []
+        for s in block.stores:
+            if s.array in self.printer.kept or not _is_own(s):
+                place = f"model->{c_name(s.array)}{'[leg]' * bool(block.leg_type)}"
+                lines += statement(f"{place} = {self.printer.text(s.value)}")
+        return lines
 
     def _parameters(self, used: set[str], leg: str | None) -> list[str]:
         """The entries of the parameters, and the signs of the branches, that are used."""
-        table, lines = self.bundle.derivation.parameters, []
+        table, lines = self.bundle.derivation.parameters, list[str]()
         for name, (parameter, index) in table.entries.items():
             if name in used and parameter.leg_type == leg:
-                lines.append(f"const real {c_name(name)} = params->{_entry(parameter, index)};")
+                lines += statement(self.printer.assigned(name, _entry(parameter, index)))
         for name, (leg_type, signs) in table.branches.items():
             if name in used and leg_type == leg:
                 values = ", ".join(map(str, signs))
                 lines.append(f"static const signed char signs_{name}[] = {{{values}}};")
-                lines.append(f"const real {c_name(name)} = signs_{name}[own];")
+                lines += statement(self.printer.assigned(name, f"signs_{name}[own]"))
         return lines
 
 
@@ -144,8 +171,8 @@ def _entry(parameter: ParameterField, index: int) -> str:
     at = parameter.name + ("[own]" if parameter.leg_type else "")
     if len(parameter.shape) == 2:
         row, column = divmod(index, parameter.shape[1])
-        return f"{at}[{row}][{column}]"
-    return f"{at}[{index}]" if parameter.shape else at
+        return f"params->{at}[{row}][{column}]"
+    return f"params->{at}[{index}]" if parameter.shape else f"params->{at}"
 
 
 def prepare_body(bundle: Bundle) -> list[str]:

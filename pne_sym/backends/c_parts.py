@@ -33,7 +33,6 @@ from pne_sym.backends.c_text import (
     in_pairs,
     statement,
 )
-from pne_sym.backends.describe import equation_titles
 from pne_sym.program.ir import Block, Check, Function, Store
 from pne_sym.program.slices import is_full, places_of, read_by, slices
 
@@ -48,10 +47,10 @@ class Parts:
         self.f = function
         self.summed = summed
         self.name = function.name
-        self.titles = equation_titles(bundle.derivation)
         self.slices = own = slices(function)
         self.first, self.legs, self.last = own.before, own.legs, own.after
-        self.passed, self.sums, self.made = stages.passed(function.name), own.sums, own.made
+        self.passed, self.sums = stages.passed(function.name), stages.sums(function.name)
+        self.made = own.made
         self.least = least_values(bundle)
         self.known = stages.known(function.name)
         self.first_checks = [*function.unpack_checks, *(self.first.checks if self.first else ())]
@@ -92,7 +91,7 @@ class Parts:
         loads, members = entries(self.bundle, self.f, "k"), self.stages.members(self.name, "")
         shared = Shared(members, "v->", self.prepared(self.f.shared), self.known)
         lines = [stage_routine(self.bundle, self.stages, s).call() for s in half.stages]
-        lines += statements(half.own, self.titles, shared, loads)
+        lines += statements(half.own, shared, loads)
         for n in half.stored:
             lines += loaded(loads, sp.Symbol(n))
             lines.append(f"s[{self.passed.index(n)}*w + k] = {shared.text(sp.Symbol(n))};")
@@ -100,14 +99,25 @@ class Parts:
             lines += self._ends(self.first, self.first_checks, loads, shared)
         return self._routine(part, ("values *v", "real *s"), lines)
 
-    def after(self) -> Routine:
-        """Computes what needs the sums over the legs."""
-        assert self.last is not None
-        loads = self.passed_at("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
+    def after(
+        self, blocks: Iterable[Block], lines: Iterable[str] = (), first: tuple[int, int] = (0, 0)
+    ) -> Routine:
+        """Computes what needs the sums over the legs.
+
+        Args:
+            blocks: what is computed, and what that gives.
+            lines: that stand before it.
+            first: places in s and in sums from which these are counted.
+        """
+        passed, sums = self.passed[first[0] :], self.sums[first[1] :]
+        loads = {n: f"s[{at}*w + k]" for at, n in enumerate(passed)}
+        loads |= {n: f"sums[{at}*w + k]" for at, n in enumerate(sums)}
         shared = Shared(places=self.prepared(self.f.shared), known=self.known)
-        lines = statements(self.last.assignments, self.titles, shared, loads)
-        lines += self._ends(self.last, self.last.checks, loads, shared)
-        return self._routine("after", ("const real *s", "const real *sums"), lines)
+        body = [*lines]
+        for block in blocks:
+            body += statements(block.assignments, shared, loads)
+            body += self._ends(block, block.checks, loads, shared)
+        return self._routine("after", ("const real *s", "const real *sums"), body)
 
     def _routine(self, part: str, values: tuple[str, ...], lines: list[str]) -> Routine:
         """The lines as a routine of state k."""
@@ -140,7 +150,7 @@ class Parts:
             value = shared.text(store.value)
             text = statement(f"{store.array}[{factor(place)}*w + k] = {value}")
             rows.append((store.equation, [*loaded(loads, store.value), *text]))
-        lines = headed(rows, self.titles)
+        lines = headed(rows)
         if self.summed and block and block.stores:
             lines += statement(f"t->total[k] += {self.summed_up(block, shared)}")
         return lines + self.flags(checks, "t->{}[k] +=", loads, shared)

@@ -6,7 +6,6 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_stages import Shared, Stage, Stages
 from pne_sym.backends.c_statements import entries, leg_input, statements, vector_name
 from pne_sym.backends.c_text import Routine, c_name, indented, listing
-from pne_sym.backends.describe import equation_titles
 
 
 def stage_routine(bundle: Bundle, stages: Stages, stage: Stage) -> Routine:
@@ -31,9 +30,8 @@ def stage_routine(bundle: Bundle, stages: Stages, stage: Stage) -> Routine:
     }
     known = {n for other in stages.stages for n in other.exported if other.part == part} - made
     loads = {n: text for n, text in loads.items() if n not in made | known}
-    titles = equation_titles(bundle.derivation)
     shared = Shared(known.union(stage.exported), "v->", prepared, stages.known_in(stage))
-    lines = statements(own, titles, shared, loads)
+    lines = statements(own, shared, loads)
     vectors = dict.fromkeys(v for f in users for v in f.inputs)
     parameters = [
         "const prepared *m",

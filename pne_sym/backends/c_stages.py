@@ -87,9 +87,9 @@ class Shared:
         text, texts = self.printer.text(expr), self.texts
         return _NAME.sub(lambda n: texts.get(n[0], n[0]), text) if texts else text
 
-    def target(self, name: str) -> str:
-        """What a value is assigned to: its place, or a name of its own."""
-        return self.texts.get(c_name(name), f"const real {c_name(name)}")
+    def assigned(self, name: str, value: str) -> str:
+        """A value given to its place, or to a name of its own."""
+        return f"{self.texts.get(c_name(name), f'const real {c_name(name)}')} = {value}"
 
 
 class Stages:
@@ -206,13 +206,13 @@ class Stages:
     # ---- what is asked ---------------------------------------------------------------------
 
     def givers(self, part: str, given: object) -> frozenset[str]:
-        """Functions whose legs of a type add this to a sum, or store it."""
+        """Functions whose legs of a type add this to a sum, or store it; "" for behind the legs."""
         return self._givers.get((part, given), frozenset())
 
     def _all_givers(self) -> dict[tuple[str, object], frozenset[str]]:
         found: dict[tuple[str, object], frozenset[str]] = {}
         for name, own in self.parts.items():
-            for block in own.legs:
+            for block in (*own.legs, *([own.after] if own.after else [])):
                 for given in (*block.sums, *block.stores):
                     key = (block.leg_type, given)
                     found[key] = found.get(key, frozenset()) | {name}
@@ -281,6 +281,13 @@ class Stages:
         own = {n for n, k in self.made[function].items() if k in numbers}
         others = {n for s in self.used(function, part) for n in s.exported}
         return own | (others - set(self.made[function]))
+
+    def sums(self, function: str) -> list[str]:
+        """Sums over the legs, together those that the same functions have."""
+        own = self.parts[function].sums
+        users = {n: frozenset(f for f, p in self.parts.items() if n in p.sums) for n in own}
+        order = list(dict.fromkeys(users.values()))
+        return sorted(own, key=lambda n: order.index(users[n]))
 
     def passed(self, function: str) -> list[str]:
         """Names made before the legs that later parts read; what stages read has a fixed place."""

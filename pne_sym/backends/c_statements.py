@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_stages import Shared, aliases
 from pne_sym.backends.c_text import WIDTH, c_name, comment, statement, table
+from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Assignment, Function, LegInput
 from pne_sym.program.slices import read_in
 
 _WORTH = 3
+_HEAD = re.compile(r"^( *)/\* \((\S+)\) \*/$", re.MULTILINE)
 
 
 def vector_name(vector: str) -> str:
@@ -22,7 +25,6 @@ def vector_name(vector: str) -> str:
 
 def statements(
     assignments: Iterable[Assignment],
-    titles: dict[str, str],
     printer: Shared,
     loads: dict[str, str] | None = None,
 ) -> list[str]:
@@ -30,7 +32,6 @@ def statements(
 
     Args:
         assignments: in order.
-        titles: of the equations.
         printer: of expressions; a value that has a place there is put into it.
         loads: where the names stand that are not yet at hand; those that are read are taken out.
     """
@@ -40,26 +41,42 @@ def statements(
             a.equation,
             [
                 *loaded(waiting, a.expr),
-                *statement(f"{printer.target(a.target.name)} = {printer.text(a.expr)}"),
+                *statement(printer.assigned(a.target.name, printer.text(a.expr))),
             ],
         )
         for a in assignments
     )
-    return headed(rows, titles)
+    return headed(rows)
 
 
-def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> list[str]:
-    """Lines with the equations they belong to, under these; titles are told once and taken out."""
+def headed(rows: Iterable[tuple[str, list[str]]]) -> list[str]:
+    """Lines with the equations they belong to, under these."""
     lines: list[str] = []
     known = ""
     for equation, own in rows:
         if equation and equation != known:
-            known, title = equation, titles.get(equation)
-            named = f"{equation}: named entries" if title is None else f"({equation}) {title}"
-            lines += comment(named.rstrip())
-            titles |= {equation: ""} if title else {}
+            known = equation
+            lines.append(f"/* ({equation}) */")
         lines += own
     return lines
+
+
+class Titles:
+    """Tells the title of an equation where a file names it first."""
+
+    def __init__(self, bundle: Bundle) -> None:
+        self.titles = equation_titles(bundle.derivation)
+
+    def told(self, text: str) -> str:
+        """Text with titles behind the ids over statements; names of inputs are no equations."""
+        return _HEAD.sub(self._head, text)
+
+    def _head(self, found: re.Match[str]) -> str:
+        indent, equation = found.groups()
+        title = self.titles.get(equation)
+        self.titles |= {equation: ""} if title else {}
+        named = f"{equation}: named entries" if title is None else f"({equation}) {title}"
+        return "\n".join(f"{indent}{line}" for line in comment(named.rstrip()))
 
 
 def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:

@@ -42,7 +42,7 @@ def line_of(model: Model, statement: Statement) -> str:
             f"{model.name}.c",
             model.c,
             rf"/\* ---- {statement.function} ",
-            rf"\s*(const real |v->){name} =",
+            rf"\s*((const real |v->){name} =|KEEP(_OF_LEG)?\({name},)",
         ),
         (f"{model.name}.py", model.python, rf"def _run_{statement.function}\(", rf"\s*{name} ="),
     )

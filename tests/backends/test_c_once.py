@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pne_sym.backends.c_after import After
 from pne_sym.backends.c_backend import _run
 from pne_sym.backends.c_leg_parts import LegParts
 from pne_sym.backends.c_once import Once
 from pne_sym.backends.c_parts import Parts
 from pne_sym.backends.c_stages import Stages
+from pne_sym.backends.c_statements import Titles
 from pne_sym.backends.c_text import Routine
 from pne_sym.program.slices import slices
 from tests.models import bundle, catalogue
@@ -55,3 +57,27 @@ def test_what_functions_give_alike_is_one_routine_wherever_it_stands() -> None:
     assert "sums_rpr(k, count, add, &v, terms);" in calls["Z"]
     assert "sums_rpr(k, count, add, &v, terms + 6*count);" in calls["dynamics"]
     assert all("entries_rpr(k, count, &v, o);" in calls[n] for n in ("dynamics", "H", "required"))
+
+
+def test_what_follows_the_sums_over_the_legs_is_one_routine_too() -> None:
+    """Dynamics calls what M and Z do with their sums; those of Z stand behind those of M there."""
+    compiled = bundle(catalogue("planar_3rpr"))
+    run = _run(compiled)
+    stages = Stages(run.values())
+    after = {n: After(Parts(compiled, run[n], stages, summed=True)) for n in ("dynamics", "M", "Z")}
+    once = Once(("after", p.routine) for own in after.values() for p in own.pieces)
+    of_m, of_z = (f.definition()[0].split("(")[0].split()[-1] for f in once.shared.values())
+    lines = {n: own.routine(once).body for n, own in after.items()}
+    assert [line.split("(")[0] for line in lines["dynamics"]] == [of_m, of_z]
+    assert [line.split("(")[0] for n in "MZ" for line in lines[n]] == [of_m, of_z]
+    assert "sums + 6*w" in lines["dynamics"][1]
+    assert "sums, Z" in lines["Z"][0]
+
+
+def test_an_equation_is_told_by_its_title_where_the_file_names_it_first() -> None:
+    """Under its id alone everywhere else; what names inputs is no equation."""
+    text = "/* (X) */\n    /* (M_tt) */\nM\n/* (M_tt) */"
+    told = Titles(bundle(catalogue("planar_3rpr"))).told(text).split("\n")
+    assert told[0] == "/* X: named entries */"
+    assert told[1].startswith("    /* (M_tt) translational block of M")
+    assert told[2:] == ["M", "/* (M_tt) */"]
