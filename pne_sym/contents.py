@@ -68,11 +68,16 @@ class Contents:
 
     Args:
         folder: it has the model's name; it may be missing.
+
+    Attributes:
+        targets: that it was generated with, those of default where the manifest says nothing;
+            names may be those of another version.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.model = folder, folder.name
         self.manifest = _manifest(folder / f"{folder.name}.json")
+        self.targets = recorded_targets(self.manifest)
 
     @property
     def is_generated(self) -> bool:
@@ -88,14 +93,6 @@ class Contents:
                 if _has_header(path):
                     return True
         return False
-
-    @property
-    def targets(self) -> tuple[str, ...]:
-        """Targets that it was generated with; names may be those of another version.
-
-        Those of default where the manifest says nothing.
-        """
-        return recorded_targets(self.manifest)
 
     @cached_property
     def files(self) -> frozenset[str]:

@@ -67,7 +67,7 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
 
     if not isinstance(source, str | os.PathLike):
         return checked(source)
-    if isinstance(source, str) and not _is_path(source):
+    if isinstance(source, str) and not any(mark in source for mark in (".", "/", os.sep)):
         return manipulators.load(source)
     return read_spec(Path(source))
 
@@ -265,7 +265,3 @@ def _interrupts_held() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _is_path(text: str) -> bool:
-    return "." in text or "/" in text or os.sep in text

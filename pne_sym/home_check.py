@@ -8,24 +8,20 @@ dynamics are singular, or a pose around home fails, a warning says so and why.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import equation_titles
 from pne_sym.mechanics.mobility import motions_at_home
 from pne_sym.model.errors import SpecError, SpecWarning
-from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
+from pne_sym.program.evaluate import Evaluation, Failure, Flags, Status, evaluate, prepare
 from pne_sym.program.interpret import REST, Interpreter
 from pne_sym.program.iteration import close_loops
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 STEP = 0.01
 """How far the poses around home are: no angle (rad) or length (of the mechanism's size) more."""
@@ -110,7 +106,7 @@ class _Model:
             raise SpecError(
                 self.bundle.name,
                 "home",
-                f"{_listed(f.function for f in faults)} would be NaN there: {faults[0].reason}",
+                f"{', '.join(f.function for f in faults)} would be NaN there: {faults[0].reason}",
                 "a home, and parameters, at which the model can be evaluated",
             )
 
@@ -120,7 +116,7 @@ class _Model:
         if faults:
             failed = np.any([f.states for f in faults], axis=0)
             yield (
-                f"home: {_listed(f.function for f in faults)} NaN at {_share(failed)} around it, "
+                f"home: {', '.join(f.function for f in faults)} NaN at {_share(failed)} around it, "
                 f"{STEP:g} rad or {STEP:.0%} of the size away: {faults[0].reason}"
             )
 
@@ -130,13 +126,16 @@ class _Model:
         failed = self._unsolved(c.sizes["NU"])
         if not c.actuation.is_determined:
             never = [name for name, states in failed.items() if states.all()]
-            yield f"{_listed(never)}: NaN at every state: {_UNDERDRIVEN}"
+            yield f"{', '.join(never)}: NaN at every state: {_UNDERDRIVEN}"
             failed = {name: states for name, states in failed.items() if name not in never}
         reasons: dict[str, list[str]] = {}
         for name in failed:
             reasons.setdefault(_singular(name, constrained=c.sizes["NC"] > 0), []).append(name)
         for reason, names in reasons.items():
-            yield from self._told(names, np.any([failed[n] for n in names], axis=0), reason)
+            states = np.any([failed[n] for n in names], axis=0)
+            around = f"at {_share(states[_AT_HOME:])} around it"
+            where = "there" if states[:_AT_HOME].any() else around
+            yield f"home: {', '.join(names)} NaN {where}: {reason}"
 
     def _unsolved(self, actuators: int) -> dict[str, Flags]:
         """Functions that solve linear equations -> states at which these have no solution."""
@@ -150,12 +149,6 @@ class _Model:
                 inputs = {a.name: given[a.name] for a in model.functions[name].required}
                 found[name] = (model.call(name, **inputs).status != Status.OK) & usable
         return {name: states for name, states in found.items() if states.any()}
-
-    def _told(self, functions: list[str], failed: Flags, why: str) -> Iterator[str]:
-        if failed[:_AT_HOME].any():
-            yield f"home: {_listed(functions)} NaN there: {why}"
-        else:
-            yield f"home: {_listed(functions)} NaN at {_share(failed[_AT_HOME:])} around it: {why}"
 
     # ---- reasons ---------------------------------------------------------------------
 
@@ -262,10 +255,6 @@ def _singular(function: str, *, constrained: bool) -> str:
             "or constraints that depend on one another"
         )
     return "M is singular: a motion without inertia"
-
-
-def _listed(functions: Iterable[str]) -> str:
-    return ", ".join(functions)
 
 
 def _share(failed: Flags) -> str:

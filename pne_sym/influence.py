@@ -12,17 +12,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import Derivation
 from pne_sym.mechanics.actuation import elsewhere
 from pne_sym.model.errors import SpecError
+from pne_sym.model.kinematics import Array
 from pne_sym.program.evaluate import evaluate, prepare
 from pne_sym.program.interpret import REST
 from pne_sym.program.iteration import close_loops
-
-Array = NDArray[np.float64]
 
 _POSES = 3
 """Poses beside home."""

@@ -146,10 +146,7 @@ def generate(sources: tuple[str, ...], out: Path, target: str, quiet: bool, debu
     the folder stay.
     """
     with told(debug=debug):
-        names = registry.chosen(target)
-        writer.check_output(out)
-        _check_command(sources[0])
-        _generate(_find(sources), out, jobs=1, report=Report(quiet=quiet), targets=names)
+        _generate(sources, out, target, jobs=1, quiet=quiet)
 
 
 @app.command("all")
@@ -161,10 +158,7 @@ def generate(sources: tuple[str, ...], out: Path, target: str, quiet: bool, debu
 def generate_all(out: Path, target: str, jobs: int, quiet: bool, debug: bool) -> None:
     """Generate the whole catalogue."""
     with told(debug=debug):
-        names = registry.chosen(target)
-        writer.check_output(out)
-        report = Report(quiet=quiet)
-        _generate(_find(_catalogue()), out, jobs=jobs, report=report, targets=names)
+        _generate(_catalogue(), out, target, jobs=jobs, quiet=quiet)
 
 
 @app.command("list")
@@ -210,9 +204,8 @@ def check(
     """
     with told(debug=debug):
         names = None if target is None else registry.chosen(target)
-        wanted = _wanted(sources, out)
-        models, report = _find(wanted), Report(quiet=quiet)
-        if not _check(wanted, models, out, jobs=jobs, report=report, targets=names):
+        report = Report(quiet=quiet)
+        if not _check(_wanted(sources, out), out, names, jobs=jobs, report=report):
             raise Exit(DIFFERENT)
 
 
@@ -274,16 +267,14 @@ def _find(sources: Sequence[str]) -> list[Manipulator]:
     return models
 
 
-def _generate(
-    models: Sequence[Manipulator],
-    out: Path,
-    *,
-    jobs: int,
-    report: Report,
-    targets: Sequence[str],
-) -> None:
+def _generate(sources: Sequence[str], out: Path, target: str, *, jobs: int, quiet: bool) -> None:
+    """Generate models, once nothing is left that can be refused before the work."""
     from pne_sym.generation import compile_many, remarks
 
+    targets, report = registry.chosen(target), Report(quiet=quiet)
+    writer.check_output(out)
+    _check_command(sources[0])
+    models = _find(sources)
     with report.progress(len(models)) as step:
         compiling = compile_many(models, jobs, {model.name: targets for model in models})
         for model in models:
@@ -299,17 +290,12 @@ def _generate(
 
 
 def _check(
-    sources: Sequence[str],
-    models: Sequence[Manipulator],
-    out: Path,
-    *,
-    jobs: int,
-    report: Report,
-    targets: tuple[str, ...] | None,
+    sources: Sequence[str], out: Path, targets: tuple[str, ...] | None, *, jobs: int, report: Report
 ) -> bool:
     """Report every difference; return whether there is none."""
     from pne_sym.generation import compile_many, targets_of
 
+    models = _find(sources)
     differing = {}
     wanted = {m.name: targets_of(out / m.name) if targets is None else targets for m in models}
     with report.progress(len(models)) as step:

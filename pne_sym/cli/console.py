@@ -47,19 +47,12 @@ def discard_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def print_error(message: str) -> None:
-    """Print one error message on standard error."""
-    _print(sys.stderr, "pne-gen: error: ", message, "bold red")
+_STYLES = {"error: ": "bold red", "warning: ": "yellow", "": "cyan"}
 
 
-def print_warning(message: str) -> None:
-    """Print one warning on standard error."""
-    _print(sys.stderr, "pne-gen: warning: ", message, "yellow")
-
-
-def print_note(message: str) -> None:
-    """Print what was chosen for the user on standard error."""
-    _print(sys.stderr, "pne-gen: ", message, "cyan")
+def print_message(kind: str, message: str) -> None:
+    """Print one message on standard error: an "error: ", a "warning: ", or what was chosen ("")."""
+    _print(sys.stderr, f"pne-gen: {kind}", message, _STYLES[kind])
 
 
 class Report:
@@ -73,17 +66,17 @@ class Report:
         self.quiet = quiet
         self._live: Progress | None = None
 
-    def line(self, text: str, style: str = "") -> None:
+    def line(self, text: str) -> None:
         """Print a line of result, unless quiet."""
         if self.quiet:
             return
         if self._live is not None and sys.stdout.isatty():
             from rich.text import Text
 
-            self._live.console.print(Text(_visible(text), style), soft_wrap=True)
+            self._live.console.print(Text(_visible(text)), soft_wrap=True)
         else:
             with _output_errors():
-                _print(sys.stdout, "", text, style)
+                _print(sys.stdout, "", text, "")
 
     def difference(self, line: str) -> None:
         """Print a line of a unified diff, also if quiet."""

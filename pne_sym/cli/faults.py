@@ -7,12 +7,11 @@ import sys
 import traceback
 import warnings
 from collections.abc import Iterator
-from typing import TextIO
 
 from click.exceptions import Exit
 
 from pne_sym.backends.target import TargetError
-from pne_sym.cli.console import discard_output, flush_output, print_error, print_note, print_warning
+from pne_sym.cli.console import discard_output, flush_output, print_message
 from pne_sym.writer import OutputError
 
 DIFFERENT = 1
@@ -46,10 +45,10 @@ def told(*, debug: bool) -> Iterator[None]:
     except Exit:
         raise
     except (InputError, SpecError, OutputError, TargetError) as error:
-        print_error(str(error))
+        print_message("error: ", str(error))
         raise Exit(INPUT_AT_FAULT) from error
     except KeyboardInterrupt as error:
-        print_error("interrupted")
+        print_message("error: ", "interrupted")
         raise Exit(INTERRUPTED) from error
     except BrokenPipeError as error:
         # Nobody is left to tell.  The work may not be done, nor is the answer known: not 0.
@@ -75,26 +74,19 @@ def _tell_internal_error(error: Exception, *, debug: bool) -> None:
     if debug:
         traceback.print_exception(error)
     summary = f"{type(error).__name__}: {error}".splitlines()[0]
-    print_error(f"internal error: {summary}")
+    print_message("error: ", f"internal error: {summary}")
     if not debug:
         sys.stderr.write("Run it again with --debug for the traceback, and please report it.\n")
 
 
 def _show_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
+    message: Warning | str, category: type[Warning], *_: object, **__: object
 ) -> None:
     """Print a warning in one line; one that is not about the input with its class."""
     from pne_sym.model.errors import SpecNote, SpecWarning
 
-    del filename, lineno, file, line
     if issubclass(category, SpecNote):
-        print_note(f"{message}")
+        print_message("", f"{message}")
         return
-    print_warning(
-        f"{message}" if issubclass(category, SpecWarning) else f"{category.__name__}: {message}"
-    )
+    name = "" if issubclass(category, SpecWarning) else f"{category.__name__}: "
+    print_message("warning: ", f"{name}{message}")

@@ -155,20 +155,9 @@ def _answer(
 ) -> tuple[bool, Iterable[str]]:
     """Whether all is equal, and the lines of the answer."""
     from pne_sym.review import collection, diff_text, markdown
-    from pne_sym.review.identical import identical
-    from pne_sym.review.sources import same_bytes
 
     if before.models is None and after.models is None and not (before.is_none or after.is_none):
-        if before.folder is not None and same_bytes(before, after):
-            found = identical(before, after, options.tolerance)
-        else:
-            from pne_sym.review.compare import compare
-            from pne_sym.review.versions import version_of
-
-            found = compare(
-                version_of(before), version_of(after),
-                tolerance=options.tolerance, run=options.run, c=options.c,
-            )  # fmt: skip
+        found = collection.compared(before, after, options)
         one: dict[str, Callable[[Comparison], Iterable[str]]] = {
             "json": lambda c: [diff_text.as_json(c)],
             "markdown": markdown.as_markdown,

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pne_sym.drawing.film import check_film, save_film
-from pne_sym.drawing.paper import check_path, save
+from pne_sym.drawing.paper import check_path, rendered, write
 from pne_sym.drawing.planar import planar_picture
 from pne_sym.drawing.poses import Configuration, closed, pose_of
 from pne_sym.drawing.scene import Scene, ground_of, scene_of
@@ -66,7 +66,8 @@ def draw(
     """
     check_path(Path(path))
     manipulator = find(source)
-    save(picture(manipulator, X, q, azimuth=azimuth, elevation=elevation), Path(path))
+    found = picture(manipulator, X, q, azimuth=azimuth, elevation=elevation)
+    write(Path(path), rendered(found, Path(path).suffix))
     return Path(path)
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pne_sym.drawing.scene import SAME, Scene, Slide
+from pne_sym.drawing.scene import SAME, Scene
 from pne_sym.drawing.shapes import Label, Shape, hull, rounded
-from pne_sym.drawing.solids import Paint, Solid, ball, cylinder, perpendiculars, prism
-from pne_sym.drawing.style import AXES, BASE, JOINT, LETTERS, LINK, PLATFORM, Proportions
+from pne_sym.drawing.solids import Solid, ball, cylinder, perpendiculars, prism
+from pne_sym.drawing.style import AXES, BASE, JOINT, LETTERS, LINK, PLATFORM, Paint, Proportions
 from pne_sym.drawing.view import View
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 _FLAT = 0.1
 """Feet nearer to a plane than this part of their lesser spread in it stand on one plate."""
@@ -46,9 +44,8 @@ def base_plate(scene: Scene, view: View, sizes: Proportions) -> Plate:
         face = _outline(feet, normal, 4.0 * r, top)
         solids.append(prism(view, face, 1.6 * r * normal, paint, bias=-6.0 * r, ground=True))
         pads = [(base, base - (float(base @ normal) - top) * normal) for base in bases]
-    grounded = [isinstance(leg.parts[0], Slide) and leg.parts[0].grounded for leg in scene.legs]
-    for (base, pad), on_rail in zip(pads, grounded, strict=True):
-        if not on_rail:
+    for (base, pad), leg in zip(pads, scene.legs, strict=True):
+        if leg.rail is None:
             solids.append(cylinder(view, pad, base, 1.15 * r, paint, -0.5 * r))
     if scene.centre is not None and np.isfinite(top):
         solids += _pivot(scene.centre, normal, top, view, r)
@@ -64,12 +61,9 @@ def _pivot(centre: Array, normal: Array, top: float, view: View, r: float) -> li
 
 def _rail_ends(scene: Scene, normal: Array) -> list[Array]:
     """Points under the ends of rails that lie flat."""
-    ends = []
-    for leg in scene.legs:
-        first = leg.parts[0]
-        if isinstance(first, Slide) and first.grounded and abs(float(first.axis @ normal)) < 0.2:
-            ends.append(np.array([first.start, first.end]))
-    return ends
+    rails = (leg.rail for leg in scene.legs if leg.rail is not None)
+    flat = (rail for rail in rails if abs(float(rail.axis @ normal)) < 0.2)
+    return [np.array([rail.start, rail.end]) for rail in flat]
 
 
 def platform_plate(scene: Scene, view: View, sizes: Proportions, normal: Array) -> list[Solid]:
@@ -85,22 +79,17 @@ def platform_plate(scene: Scene, view: View, sizes: Proportions, normal: Array) 
         ends = anchors[int(along.argmin())], anchors[int(along.argmax())]
         return [cylinder(view, ends[0], ends[1], 1.2 * r, paint)]
     up, _ = _plane(anchors, normal, scene.size)
-    if scene.centre is not None:  # the legs hold it beside the plane of the centre
-        level = float((anchors @ up).mean())
-        post = cylinder(
-            view, scene.centre - (float(scene.centre @ up) - level) * up, scene.centre, r, paint
-        )
-    top = float((anchors @ up).mean()) + 0.6 * r
-    face = _outline(anchors, up, 1.2 * r, top)
-    plate = prism(view, face, 1.2 * r * up, paint)
-    struts = [
-        cylinder(
-            view, anchor, anchor - (float(anchor @ up) - top + 0.6 * r) * up, 0.6 * r, Paint(LINK)
-        )
-        for anchor in anchors
-        if abs(float(anchor @ up) - top + 0.6 * r) > 2.0 * r
-    ]
-    return [plate, *struts] + ([post] if scene.centre is not None else [])
+    level = float((anchors @ up).mean())
+    top = level + 0.6 * r
+    solids = [prism(view, _outline(anchors, up, 1.2 * r, top), 1.2 * r * up, paint)]
+    for anchor in anchors:
+        off = float(anchor @ up) - top + 0.6 * r
+        if abs(off) > 2.0 * r:
+            solids.append(cylinder(view, anchor, anchor - off * up, 0.6 * r, Paint(LINK)))
+    if (centre := scene.centre) is not None:  # the legs hold it beside the plane of the centre
+        foot = centre - (float(centre @ up) - level) * up
+        solids.append(cylinder(view, foot, centre, r, paint))
+    return solids
 
 
 def frame_solids(scene: Scene, view: View, sizes: Proportions) -> tuple[list[Solid], list[Label]]:

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.drawing.shapes import Label, Picture
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 BALLOON = 6.0
 """Least radius of the circle about a label, in typographic points."""
@@ -58,25 +56,19 @@ def label_places(
     """
     shapes = [shape for shape in picture.shapes if not shape.ground]
     outlines = [shape.points * scale + shift for shape in shapes] + list(page.taken)
-    wanted = [
-        np.clip(label.point * scale + shift + np.array(label.shift), page.low + e, page.high - e)
-        for label, e in zip(picture.labels, extents, strict=True)
-    ]
-    fixed = zip(picture.labels, wanted, extents, strict=True)
-    taken = [
-        (place, max(BALLOON, float(e.max()))) for label, place, e in fixed if not label.balloon
-    ]
-    places = []
-    for label, place, e in zip(picture.labels, wanted, extents, strict=True):
-        found = place
+
+    def inside(place: Array, e: Array) -> Array:
+        return np.clip(place, page.low + e, page.high - e)
+
+    labels = list(zip(picture.labels, extents, strict=True))
+    places = [inside(each.point * scale + shift + each.shift, e) for each, e in labels]
+    fixed = [k for k, (label, _) in enumerate(labels) if not label.balloon]
+    taken = [(places[k], max(BALLOON, float(extents[k].max()))) for k in fixed]
+    for k, (label, e) in enumerate(labels):
         if label.balloon:
-            candidates = [
-                np.clip(each, page.low + e, page.high - e)
-                for each in _candidates(place, np.array(label.shift))
-            ]
-            found = _clear(candidates, float(e[0]), outlines, taken)
-            taken.append((found, float(e[0])))
-        places.append(found)
+            candidates = [inside(each, e) for each in _candidates(places[k], label.shift)]
+            places[k] = _clear(candidates, float(e[0]), outlines, taken)
+            taken.append((places[k], float(e[0])))
     return places
 
 
@@ -102,7 +94,7 @@ def _clear(
     return best
 
 
-def _candidates(place: Array, shift: Array) -> list[Array]:
+def _candidates(place: Array, shift: tuple[float, float]) -> list[Array]:
     """The place itself, then rings about it, each from the side the label was shifted to."""
     start = math.atan2(shift[1], shift[0])
     found = [place]

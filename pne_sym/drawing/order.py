@@ -8,12 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.drawing.solids import Solid
 from pne_sym.drawing.view import View
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 
 def painted(solids: Sequence[Solid], view: View) -> list[Solid]:

@@ -11,18 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.drawing.labels import Page, extent, label_places
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc
 from pne_sym.drawing.style import LABEL, OUTLINE
 from pne_sym.generation import InputError
+from pne_sym.model.kinematics import Array
 from pne_sym.writer import OutputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
 
 FORMATS = (".svg", ".png", ".pdf")
 WIDTH, HEIGHT = 432.0, 324.0
@@ -50,17 +48,6 @@ def check_path(path: Path) -> None:
         raise InputError(f"cannot draw {path}: a picture's name ends in {', '.join(FORMATS)}")
 
 
-def save(picture: Picture, path: Path) -> None:
-    """Write a picture; the same bytes each time for one version of matplotlib.
-
-    Raises:
-        InputError: matplotlib is not installed, or the file's ending is not known.
-        OutputError: the file cannot be written.
-    """
-    check_path(path)
-    write(path, rendered(picture, path.suffix))
-
-
 def write(path: Path, content: bytes) -> None:
     """Write the bytes of a picture file.
 
@@ -74,7 +61,7 @@ def write(path: Path, content: bytes) -> None:
 
 
 def rendered(picture: Picture, suffix: str) -> bytes:
-    """The bytes of a picture file.
+    """The bytes of a picture file; the same each time for one version of matplotlib.
 
     Raises:
         InputError: matplotlib is not installed.

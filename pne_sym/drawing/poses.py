@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.generation import InputError
 from pne_sym.mechanics.mobility import mobility
-from pne_sym.model.kinematics import TASK_SPACES
+from pne_sym.model.kinematics import TASK_SPACES, Array
 from pne_sym.model.loops import Loops, legs_closed
 from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.program.operations import OPERATIONS
-
-Array = NDArray[np.float64]
 
 CLOSED = 1e-6
 """Largest loop-closure residual of a leg (m or rad) with which it is drawn."""

@@ -10,14 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.model.kind import Look
-from pne_sym.model.kinematics import TASK_SPACES, base_of, chain_pose, pose_at
+from pne_sym.model.kinematics import TASK_SPACES, Array, base_of, chain_pose, pose_at
 from pne_sym.model.loops import Loops
-from pne_sym.model.manipulator import Joint, Leg, Manipulator, Space
-
-Array = NDArray[np.float64]
+from pne_sym.model.manipulator import Leg, Manipulator, Space
 
 SAME = 1e-6
 """Points nearer than this part of the mechanism's size are one point."""
@@ -98,6 +95,12 @@ class LegScene:
     parts: tuple[Part, ...]
 
     @property
+    def rail(self) -> Slide | None:
+        """The joint on the base that the leg begins with, where that one extends."""
+        first = self.parts[0]
+        return first if isinstance(first, Slide) and first.grounded else None
+
+    @property
     def points(self) -> Array:
         """The points that the leg passes, from the base to the platform."""
         points = [self.base]
@@ -156,15 +159,14 @@ def ground_of(scenes: Sequence[Scene]) -> Scene:
     if len(scenes) == 1:
         return first
     points = np.vstack([leg.points for scene in scenes for leg in scene.legs])
-    legs = []
+    legs = list(first.legs)
     for index, leg in enumerate(first.legs):
-        rail = leg.parts[0]
-        if isinstance(rail, Slide) and rail.grounded:
+        if (rail := leg.rail) is not None:
             ends = np.array([scene.legs[index].points[2] for scene in scenes])
             along = np.append((ends - rail.start) @ rail.axis, 0.0)
             low, high = (rail.start + x * rail.axis for x in (along.min(), along.max()))
-            rail = replace(rail, start=low, end=high)
-        legs.append(replace(leg, parts=(rail, *leg.parts[1:])))
+            laid_out = replace(rail, start=low, end=high)
+            legs[index] = replace(leg, parts=(laid_out, *leg.parts[1:]))
     size = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     return replace(first, legs=tuple(legs), size=size)
 
@@ -183,16 +185,13 @@ def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> Leg
             turn = (axis,), (joint.actuated,), joint.extra, joint.kind.look, joint.link.is_massless
             parts.append(Turn(origin, *turn))
         else:
-            parts.append(_slide(joint, origin, chain.points[index], axis, grounded=index == 0))
+            screw = joint.kind.look is Look.SCREW
+            marks = joint.actuated, joint.extra, screw, index == 0
+            parts.append(Slide(origin, chain.points[index], axis, *marks))
     if any(leg.platform_joint.offset):
         parts.append(Bar(chain.points[-1] if chain.points else start.t, chain.tip))
     parts.append(_platform_joint(leg, chain.tip, chain.last, platform, planar=planar))
     return LegScene(start.t, tuple(parts))
-
-
-def _slide(joint: Joint, start: Array, end: Array, axis: Array, *, grounded: bool) -> Slide:
-    screw = joint.kind.look is Look.SCREW
-    return Slide(start, end, axis, joint.actuated, joint.extra, screw, grounded)
 
 
 def _platform_joint(leg: Leg, tip: Array, frame: Array, platform: Array, *, planar: bool) -> Turn:
@@ -208,10 +207,7 @@ def _joined(parts: tuple[Part, ...], near: float) -> tuple[Part, ...]:
     """Revolute joints at one point as the universal or spherical joint that they make."""
     result: list[Part] = []
     for part in parts:
-        before = result[-1] if result else None
-        joint = None
-        if isinstance(part, Turn) and isinstance(before, Turn):
-            joint = _pair(before, part, near)
+        joint = _pair(result[-1], part, near) if result else None
         if joint is None:
             result.append(part)
         else:
@@ -219,8 +215,10 @@ def _joined(parts: tuple[Part, ...], near: float) -> tuple[Part, ...]:
     return tuple(result)
 
 
-def _pair(first: Turn, second: Turn, near: float) -> Turn | None:
+def _pair(first: Part, second: Part, near: float) -> Turn | None:
     """Two joints with a massless link between as one, or None."""
+    if not (isinstance(first, Turn) and isinstance(second, Turn)):
+        return None
     apart = float(np.linalg.norm(first.point - second.point)) > near
     if apart or not first.massless or second.look != Look.PIN:
         return None

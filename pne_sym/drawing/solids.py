@@ -10,26 +10,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.drawing.shapes import Shape, disc, hull
-from pne_sym.drawing.style import LINE, OUTLINE, mixed
+from pne_sym.drawing.style import Paint, mixed
 from pne_sym.drawing.view import View
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 LIGHT, DARK = "#ffffff", "#101820"
 _SIDES = 14
-
-
-@dataclass(frozen=True)
-class Paint:
-    """How a solid is painted."""
-
-    fill: str
-    edge: str = OUTLINE
-    width: float = LINE
-    alpha: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -5,27 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pne_sym.drawing import style
 from pne_sym.drawing.frames import Plate, base_plate, frame_solids, platform_plate
 from pne_sym.drawing.order import painted
 from pne_sym.drawing.scene import Bar, LegScene, Part, Scene, Slide, Turn
 from pne_sym.drawing.shapes import Label, Picture, Shape
-from pne_sym.drawing.solids import Paint, Solid, ball, box, cylinder, perpendiculars
-from pne_sym.drawing.style import (
-    BASE,
-    LABEL,
-    LINK,
-    OUTLINE,
-    TUBE,
-    Proportions,
-    joint_colours,
-    proportions,
-)
+from pne_sym.drawing.solids import Solid, ball, box, cylinder, perpendiculars
 from pne_sym.drawing.view import View
 from pne_sym.model.kind import Look
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 _THREADS = 11
 _CROWDED = 8.0
@@ -40,7 +29,7 @@ def spatial_picture(scene: Scene, view: View, ground: Scene | None = None) -> Pi
         ground: the scene that the base is laid out for; default the same.
     """
     ground = ground or scene
-    sizes = proportions(ground)
+    sizes = style.proportions(ground)
     plate = base_plate(ground, view, sizes)
     solids = list(plate.solids)
     for leg, laid_out in zip(scene.legs, ground.legs, strict=True):
@@ -51,7 +40,7 @@ def spatial_picture(scene: Scene, view: View, ground: Scene | None = None) -> Pi
     return Picture(tuple(shapes), (*labels, *_numbers(ground, view, plate, sizes)), ())
 
 
-def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list[Label]:
+def _numbers(scene: Scene, view: View, plate: Plate, sizes: style.Proportions) -> list[Label]:
     """The legs' numbers, off the rim of the base plate, or beside the posts where there is none."""
     bases = np.array([leg.base for leg in scene.legs])
     feet, rim_at = bases, 1.5 * sizes.joint
@@ -68,14 +57,14 @@ def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list
         if y > 2.0:  # behind the leg: beside its foot
             rim, x, y = view.flat(foot), math.copysign(12.0, x), 2.0
         below = 5.0 if y < 0.0 else 0.0  # the plate's side is seen in front
-        labels.append(Label(rim, str(number), (x, y - below), LABEL, 7.0, balloon=True))
+        labels.append(Label(rim, str(number), (x, y - below), style.LABEL, 7.0, balloon=True))
     return labels
 
 
 class _Leg:
     """The solids of a leg."""
 
-    def __init__(self, leg: LegScene, view: View, sizes: Proportions, rail: Part) -> None:
+    def __init__(self, leg: LegScene, view: View, sizes: style.Proportions, rail: Part) -> None:
         self.leg, self.view, self.sizes, self.rail = leg, view, sizes, rail
         self.crowded = sizes.apart < _CROWDED * sizes.joint
 
@@ -84,7 +73,7 @@ class _Leg:
         result: list[Solid] = []
         for index, part in enumerate(self.leg.parts):
             if isinstance(part, Bar):
-                result.append(self._rod(part.start, part.end, self.sizes.link, LINK))
+                result.append(self._rod(part.start, part.end, self.sizes.link, style.LINK))
             elif isinstance(part, Slide):
                 result += self._rail(part, index) if part.grounded else self._strut(part)
             else:
@@ -92,29 +81,29 @@ class _Leg:
         return result
 
     def _rod(self, start: Array, end: Array, radius: float, colour: str) -> Solid:
-        return cylinder(self.view, start, end, radius, Paint(colour))
+        return cylinder(self.view, start, end, radius, style.Paint(colour))
 
     def _turn(self, turn: Turn, index: int) -> list[Solid]:
         r, view = self.sizes.joint, self.view
-        fill, edge, width = joint_colours(actuated=any(turn.actuated), extra=turn.extra)
+        paint = style.joint_paint(actuated=any(turn.actuated), extra=turn.extra)
         bias = 2.0 * r if index == len(self.leg.parts) - 1 else 0.0
         if turn.look is Look.BALL:
-            return [ball(view, turn.point, 1.3 * r, Paint(fill, edge, width), bias)]
+            return [ball(view, turn.point, 1.3 * r, paint, bias)]
         if turn.look is Look.BLOCK:
             halves = tuple(0.9 * r * axis for axis in np.eye(3))
-            return [box(view, turn.point, (halves[0], halves[1], halves[2]), Paint(LINK))]
+            return [
+                box(view, turn.point, (halves[0], halves[1], halves[2]), style.Paint(style.LINK))
+            ]
         if turn.look is Look.PIN:
             point, half = turn.point + self._aside(turn, index), 1.7 * r * turn.axes[0]
-            paint = Paint(fill, edge, width)
             return [cylinder(view, point - half, point + half, 1.2 * r, paint, 1.5 * r + bias)]
         pins = []
         for axis, actuated in zip(turn.axes, turn.actuated, strict=True):
-            colour, edge, width = joint_colours(actuated=actuated, extra=turn.extra)
+            own = style.joint_paint(actuated=actuated, extra=turn.extra)
             half = 2.1 * r * axis
-            paint = Paint(colour, edge, width)
             ends = turn.point - half, turn.point + half
-            pins.append(cylinder(view, *ends, 0.75 * r, paint, r + bias))
-        return [*pins, ball(view, turn.point, 0.95 * r, Paint(fill), bias)]
+            pins.append(cylinder(view, *ends, 0.75 * r, own, r + bias))
+        return [*pins, ball(view, turn.point, 0.95 * r, style.Paint(paint.fill), bias)]
 
     def _aside(self, turn: Turn, index: int) -> Array:
         """Where another joint sits at the same point, a spin joint is shown along its axis."""
@@ -138,19 +127,13 @@ class _Leg:
         """A tube and the rod in it; the actuator is the collar at the tube's mouth."""
         r, view = self.sizes.joint, self.view
         mouth, step = slide.mouth, slide.outwards
-        fill, edge, width = joint_colours(actuated=slide.actuated, extra=slide.extra)
-        collar = cylinder(
-            view,
-            mouth - 2.6 * r * step,
-            mouth + 0.6 * r * step,
-            1.45 * r,
-            Paint(fill, edge, width),
-            1.2 * r,
-        )
-        rod = self._rod(mouth, slide.end, 0.5 * r, LINK)
+        paint = style.joint_paint(actuated=slide.actuated, extra=slide.extra)
+        ends = mouth - 2.6 * r * step, mouth + 0.6 * r * step
+        collar = cylinder(view, *ends, 1.45 * r, paint, 1.2 * r)
+        rod = self._rod(mouth, slide.end, 0.5 * r, style.LINK)
         if slide.helical:
             rod = self._threaded(rod, mouth, slide.end)
-        return [self._rod(slide.start, mouth, 1.05 * r, TUBE), rod, collar]
+        return [self._rod(slide.start, mouth, 1.05 * r, style.TUBE), rod, collar]
 
     def _threaded(self, rod: Solid, start: Array, end: Array) -> Solid:
         """The rod with its thread."""
@@ -163,7 +146,7 @@ class _Leg:
         for k in range(1, _THREADS):
             middle = a + k / _THREADS * along
             line = np.array([middle - across - lean, middle + across + lean])
-            turns.append(Shape(line, "", OUTLINE, 0.9, closed=False))
+            turns.append(Shape(line, "", style.OUTLINE, 0.9, closed=False))
         return Solid(rod.outline, (*rod.shapes, *turns), rod.core, rod.bias)
 
     def _rail(self, slide: Slide, index: int) -> list[Solid]:
@@ -177,16 +160,16 @@ class _Leg:
         assert isinstance(rail, Slide)
         sense = slide.axis if float((rail.end - rail.start) @ slide.axis) >= 0.0 else -slide.axis
         start, end = rail.start - 2.0 * r * sense, rail.end + 4.0 * r * sense
-        fill, edge, width = joint_colours(actuated=slide.actuated, extra=slide.extra)
-        rod = self._rod(start + down, end + down, 0.7 * r, BASE)
+        paint = style.joint_paint(actuated=slide.actuated, extra=slide.extra)
+        rod = self._rod(start + down, end + down, 0.7 * r, style.BASE)
         if self.crowded:
             half = 3.2 * r * slide.axis
             ends = slide.end - half, slide.end + half
-            return [rod, cylinder(self.view, *ends, 1.35 * r, Paint(fill, edge, width), r)]
+            return [rod, cylinder(self.view, *ends, 1.35 * r, paint, r)]
         side = np.cross(slide.axis, down)
         side *= 1.5 * r / float(np.linalg.norm(side))
         halves = (2.2 * r * slide.axis, side, 0.45 * down)
-        return [rod, box(self.view, slide.end + down, halves, Paint(fill, edge, width))]
+        return [rod, box(self.view, slide.end + down, halves, paint)]
 
     def _away(self, slide: Slide, index: int) -> Array:
         """Unit vector across the rail, away from the next link."""

@@ -27,6 +27,16 @@ MARKED = 1.9
 
 
 @dataclass(frozen=True)
+class Paint:
+    """How something is painted: fill, edge, width of the edge, opacity."""
+
+    fill: str
+    edge: str = OUTLINE
+    width: float = LINE
+    alpha: float = 1.0
+
+
+@dataclass(frozen=True)
 class Proportions:
     """Lengths in m.
 
@@ -57,15 +67,11 @@ def proportions(scene: Scene) -> Proportions:
 
 def mixed(colour: str, other: str, part: float) -> str:
     """A colour with a part of another."""
-    pairs = zip(_rgb(colour), _rgb(other), strict=True)
+    pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round((1 - part) * a + part * b):02x}" for a, b in pairs)
 
 
-def joint_colours(*, actuated: bool, extra: bool) -> tuple[str, str, float]:
-    """Fill, edge, and width of the edge of a joint."""
+def joint_paint(*, actuated: bool, extra: bool) -> Paint:
+    """How a joint is painted."""
     fill = ACTUATED if actuated else JOINT
-    return (fill, EXTRA, MARKED) if extra else (fill, OUTLINE, LINE)
-
-
-def _rgb(colour: str) -> tuple[int, int, int]:
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+    return Paint(fill, EXTRA, MARKED) if extra else Paint(fill)

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.drawing.scene import LegScene, Scene
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array
 
 ELEVATION = 20.0
 _USUAL = -60.0
@@ -37,10 +35,6 @@ class View:
     def flat(self, points: Array) -> Array:
         """Points of the picture's plane; the last dimension holds the components."""
         return np.asarray(points) @ np.column_stack([self.right, self.up])
-
-    def depth(self, point: Array) -> float:
-        """How near a point is to the eye."""
-        return float(point @ self.toward)
 
 
 def view_from(azimuth: float, elevation: float) -> View:

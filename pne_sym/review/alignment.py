@@ -148,12 +148,6 @@ class Alignment:
             rest = f".joints[{partner}]{rest[joint.end() :]}"
         return f"legs[{self.legs[leg]}]{rest}"
 
-    def joint(self, leg: int, joint: int) -> tuple[int, int] | None:
-        """(leg, joint) before of one after."""
-        if leg not in self.legs or joint not in self.joints[leg]:
-            return None
-        return self.legs[leg], self.joints[leg][joint]
-
 
 def align(
     before: Mapping[str, Any],
@@ -197,16 +191,11 @@ def _legs(manifest: Mapping[str, Any], written: Table | None) -> list[dict[str, 
     if isinstance(form, Mapping) and isinstance(form.get("legs"), list):
         legs = [dict(leg) for leg in form["legs"] if isinstance(leg, Mapping)]
         if all(isinstance(leg.get("joints"), list) for leg in legs):
-            return _typed(legs, written)
+            own = (written or {}).get("legs")
+            alike = isinstance(own, list) and len(own) == len(legs)
+            for leg, table in zip(legs, own or (), strict=True) if alike else ():
+                if isinstance(table, Mapping):
+                    leg |= {k: table[k] for k in ("type", "name") if k in table}
+            return legs
     count = 1 + max((leg for leg, _ in manifest["joints"]), default=-1)
     return [{"joints": [{} for leg, _ in manifest["joints"] if leg == k]} for k in range(count)]
-
-
-def _typed(legs: list[dict[str, Any]], written: Table | None) -> list[dict[str, Any]]:
-    own = (written or {}).get("legs")
-    if not isinstance(own, list) or len(own) != len(legs):
-        return legs
-    for leg, table in zip(legs, own, strict=True):
-        if isinstance(table, Mapping):
-            leg |= {k: table[k] for k in ("type", "name") if k in table}
-    return legs

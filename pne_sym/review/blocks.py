@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.review.c_driver import Array, CAnswer, Key
+from pne_sym.model.kinematics import Array
+from pne_sym.review.c_driver import Key
 from pne_sym.review.difference import BlockDifference, Gap, Verdict
 from pne_sym.review.execution import Answer
 from pne_sym.review.measure import gap_between
@@ -56,12 +57,10 @@ def numpy_blocks(
         same: whether the text of a function is the same.
     """
     faults = {**before.errors, **after.errors}
-    known = [_names((*a.calls, a.errors)) for a in (before, after)]
-    for name in dict.fromkeys((*known[0], *known[1])):
-        there = [name in names for names in known]
+    for name, alone in _functions((*a.calls, a.errors) for a in (before, after)):
         reasons = [f"{why}{_with(k[1])}" for k, why in faults.items() if k[0] == name]
-        if not all(there):
-            yield BlockDifference(name, Verdict.ADDED if there[1] else Verdict.REMOVED)
+        if alone is not None:
+            yield BlockDifference(name, alone)
         elif reasons:
             yield BlockDifference(name, Verdict.NOT_COMPARED, note=reasons[0])
         else:
@@ -69,35 +68,32 @@ def numpy_blocks(
             yield compared.difference(name, before.calls, after.calls, same=same(name))
 
 
-def c_blocks(before: CAnswer, after: CAnswer, terms: Terms) -> Iterator[BlockDifference]:
+def c_blocks(before: Answer, after: Answer, terms: Terms) -> Iterator[BlockDifference]:
     """Every function of the two C modules, their sizes, home and defaults."""
-    for what, old, new in (
-        ("sizes", before.sizes, after.sizes),
-        ("home", before.home, after.home),
-    ):
-        gap = gap_between(old[None], new[None])
+    old, new = (
+        {**a.constants, **{f"default of {n}": v for n, v in a.defaults.items()}}
+        for a in (before, after)
+    )
+    for what in (w for w in old if w in new):
+        gap = gap_between([old[what]], [new[what]])
         if gap is not None:
             yield BlockDifference(f"C: {what}", Verdict.DIFFERENT, gap)
-    for name in before.defaults:
-        if name not in after.defaults:
+    for name, alone in _functions(a.calls for a in (before, after)):
+        if alone is not None:
+            yield BlockDifference(f"C: {name}", alone)
             continue
-        gap = gap_between(before.defaults[name][None], after.defaults[name][None])
-        if gap is not None:
-            yield BlockDifference(f"C: default of {name}", Verdict.DIFFERENT, gap)
-    known = [_names(a.calls) for a in (before, after)]
-    for name in dict.fromkeys((*known[0], *known[1])):
-        there = [name in names for names in known]
-        if not all(there):
-            yield BlockDifference(f"C: {name}", Verdict.ADDED if there[1] else Verdict.REMOVED)
-            continue
-        labels = [*terms.outputs(name), "status", "failures"]
-        compared = _Function(name, labels, terms)
+        compared = _Function(name, [*terms.outputs(name), "status", "failures"], terms)
         yield compared.difference(f"C: {name}", before.calls, after.calls, same=False)
 
 
-def _names(tables: Iterable[Mapping[Any, Any]]) -> list[str]:
-    """Functions of calls, in order."""
-    return list(dict.fromkeys(key[0] for each in tables for key in each))
+def _functions(
+    versions: Iterable[Sequence[Mapping[Any, Any]]],
+) -> Iterator[tuple[str, Verdict | None]]:
+    """Functions that are called, in order, and how one compares that one version has alone."""
+    old, new = (dict.fromkeys(key[0] for each in tables for key in each) for tables in versions)
+    for name in old | new:
+        alone = Verdict.REMOVED if name in old else Verdict.ADDED
+        yield name, None if name in old and name in new else alone
 
 
 class _Function:

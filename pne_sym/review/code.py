@@ -14,6 +14,7 @@ from pne_sym.program.public import Apply
 from pne_sym.review.plain import plain
 
 _ID = re.compile(r"\s*\(([A-Za-z0-9_-]+)\)")
+_NONE = "no statement of its own"
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def _grouped(in_function: Mapping[str, tuple[str, ...]]) -> tuple[Passage, ...]:
     for function, lines in in_function.items():
         if lines:
             found.setdefault(lines, []).append(function)
-    return tuple(Passage(tuple(places), lines) for lines, places in found.items())
+    return tuple(Passage(tuple(names), lines) for lines, names in found.items())
 
 
 def _runs(text: str, syntax: Syntax) -> Iterator[tuple[str, str, tuple[str, ...]]]:
@@ -70,17 +71,12 @@ def _runs(text: str, syntax: Syntax) -> Iterator[tuple[str, str, tuple[str, ...]
             named = _ID.match(line, commented.end()) if commented else None
             head, lines = (named.group(1) if named else ""), []
             function = started.group(1) if started else function
-            is_open = _stays_open(line, syntax)
+            begun = line.lstrip().startswith(syntax.comments[0])
+            is_open = begun and bool(syntax.closing) and syntax.closing not in line
         elif head:
             lines.append(line.strip())
     if head:
         yield function, head, tuple(lines)
-
-
-def _stays_open(line: str, syntax: Syntax) -> bool:
-    """Whether a comment that begins a line goes on in the next."""
-    begun = line.lstrip().startswith(syntax.comments[0])
-    return bool(syntax.closing) and begun and syntax.closing not in line
 
 
 def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...]:
@@ -92,7 +88,7 @@ def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...
             for own, _, text in statements_of(block)
             if equation in (None, own)
         )
-        for name, blocks in _places(bundle.program)
+        for name, blocks in places(bundle.program)
     }
     return _grouped(in_function)
 
@@ -110,7 +106,8 @@ def step_passages(bundle: Bundle, relation: str) -> tuple[Passage, ...]:
     return _grouped(in_function)
 
 
-def _places(program: Program) -> list[tuple[str, tuple[Block, ...]]]:
+def places(program: Program) -> list[tuple[str, tuple[Block, ...]]]:
+    """Where statements stand, in order of computation: function and blocks."""
     functions = [(name, f.blocks) for name, f in program.functions.items()]
     return [("prepare", program.prepare), *functions]
 
@@ -123,34 +120,27 @@ def statements_of(block: Block) -> Iterator[tuple[str, str, str]]:
         yield a.equation, str(a.target), f"{a.target} += {plain(a.expr)}"
     for s in block.stores:
         place = f"{s.array}[{s.row}{'' if s.column is None else f', {s.column}'}]"
-        yield (
-            s.equation,
-            place,
-            f"{place} = {plain(value) if (value := s.value) is not None else 0}",
-        )
+        value = "0" if s.value is None else plain(s.value)
+        yield s.equation, place, f"{place} = {value}"
 
 
 def why_without(bundle: Bundle, equation: Equation) -> str:
     """Why no statement is an equation's: what its components are, and where it went."""
     program, derivation = bundle.program, bundle.derivation
-    stated = {own for _, blocks in _places(program) for b in blocks for own, *_ in statements_of(b)}
+    stated = {own for _, blocks in places(program) for b in blocks for own, *_ in statements_of(b)}
     into = _users(derivation, equation.name, stated)
     used = f"used by {', '.join(into)}" if into else "used by the outputs alone"
     if equation.name not in program.lowered:
-        return (
-            f"no statement of its own: it is never formed, what needs it is formed directly; {used}"
-        )
+        return f"{_NONE}: it is never formed, what needs it is formed directly; {used}"
     frame, atoms = program.lowered[equation.name]
     shown = ", ".join(plain(atom) for atom in atoms)
     where = f" in the frame {frame}" if frame not in ("", "base") else ""
     if not any(atom.free_symbols for atom in atoms):
-        return f"no statement of its own: it is {shown}{where}, whatever the state; {used}"
-    made = {str(a.target) for _, bs in _places(program) for b in bs for a in b.assignments}
+        return f"{_NONE}: it is {shown}{where}, whatever the state; {used}"
+    made = {str(a.target) for _, bs in places(program) for b in bs for a in b.assignments}
     if any(str(s) not in made for atom in atoms for s in atom.free_symbols):
-        return (
-            f"no statement of its own: written where it is used, in {', '.join(into) or 'outputs'}"
-        )
-    return f"no statement of its own: it is {shown}{where}, values that are there already; {used}"
+        return f"{_NONE}: written where it is used, in {', '.join(into) or 'outputs'}"
+    return f"{_NONE}: it is {shown}{where}, values that are there already; {used}"
 
 
 def _users(derivation: Derivation, name: str, stated: set[str]) -> list[str]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from pne_sym.generation import InputError
 from pne_sym.review.diff_text import in_full
+from pne_sym.review.difference import Comparison
 from pne_sym.review.manifests import manifest_of
-from pne_sym.review.markdown import Part
+from pne_sym.review.markdown import Part, part_of
 from pne_sym.review.sources import Source, same_bytes
 
 
@@ -51,41 +52,46 @@ def _told(name: str, before: Source | None, after: Source | None, options: Optio
     from pne_sym.model.errors import SpecError, printable
 
     try:
-        if before is not None and after is not None and same_bytes(before, after):
-            if before.folder is not None:
-                manifest_of(before)
-            return Part(name, "equal: identical text", is_equal=True)
         if before is not None and after is not None:
-            return _compared(name, before, after, options)
+            if before.folder is None and same_bytes(before, after):
+                return Part(name, "equal: identical text", is_equal=True)
+            return part_of(name, compared(before, after, options))
         known = after if after is not None else before
         assert known is not None
         what = "new model" if before is None else "deleted"
         return Part(name, f"{what}: {_described(known)}")
-    except (InputError, SpecError, TargetError) as error:
-        return Part(name, f"cannot be compared: {printable(str(error), 400)}")
     except Exception as error:  # noqa: BLE001 - the others are compared all the same
-        told = printable(f"internal error: {type(error).__name__}: {error}", 400)
-        return Part(name, f"cannot be compared: {told}")
+        is_input = isinstance(error, InputError | SpecError | TargetError)
+        told = f"{'' if is_input else f'internal error: {type(error).__name__}: '}{error}"
+        return Part(name, f"cannot be compared: {printable(told, 400)}")
 
 
-def _compared(name: str, before: Source, after: Source, options: Options) -> Part:
+def compared(before: Source, after: Source, options: Options) -> Comparison:
+    """Two versions of a model; nothing of two folders of the same files is derived or run.
+
+    Raises:
+        InputError: one is no model, or its manifest is at fault.
+        SpecError: a specification is at fault.
+    """
+    if before.folder is not None and same_bytes(before, after):
+        manifest_of(before)
+        labels, count = (before.label, after.label), len(before.folder)
+        return Comparison(*labels, options.tolerance, identical_files=count)
     from pne_sym.review.compare import compare
-    from pne_sym.review.markdown import part_of
-    from pne_sym.review.versions import version_of
+    from pne_sym.review.model import version_of
 
     versions = version_of(before), version_of(after)
-    found = compare(*versions, tolerance=options.tolerance, run=options.run, c=options.c)
-    return part_of(name, found)
+    return compare(*versions, **vars(options))
 
 
 def _described(source: Source) -> str:
     """A model in one line."""
-    from pne_sym.review.versions import version_of
+    from pne_sym.review.model import version_of
 
     m = version_of(source).manifest
-    sizes, counted = m["sizes"], dict[str, int]()
+    sizes, counted = m["sizes"], Counter[str]()
     for t in m["leg_types"]:
-        counted[t["architecture"]] = counted.get(t["architecture"], 0) + len(t["legs"])
+        counted[t["architecture"]] += len(t["legs"])
     legs = ", ".join(f"{n} {architecture}" for architecture, n in counted.items())
     actuators = f"{sizes['NV']} degrees of freedom, {sizes['NU']} actuators"
     return f"{m['title']} ({m['space']}; legs: {legs}; {actuators})"
@@ -106,13 +112,10 @@ def as_text(before: Source, after: Source, parts: list[Part]) -> Iterator[str]:
 
 def as_json(before: Source, after: Source, parts: list[Part]) -> str:
     """Plain data as JSON."""
-    models: Mapping[str, Any] = {
-        p.name: {"equal": p.is_equal, "headline": p.headline} for p in parts
-    }
     told = {
         "before": before.label,
         "after": after.label,
         "equal": all(p.is_equal for p in parts),
-        "models": models,
+        "models": {p.name: {"equal": p.is_equal, "headline": p.headline} for p in parts},
     }
     return json.dumps(told, indent=1, ensure_ascii=False)

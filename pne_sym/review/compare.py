@@ -23,20 +23,20 @@ from pne_sym.review.difference import (
     BlockDifference,
     Change,
     Comparison,
-    Deviation,
     Edit,
     EquationDifference,
     FileDifference,
     Verdict,
+    by_text,
 )
 from pne_sym.review.edits import best_edits
 from pne_sym.review.effect import effects
 from pne_sym.review.equations import DerivationComparer
 from pne_sym.review.execution import ExecutionError
 from pne_sym.review.files import file_differences
-from pne_sym.review.interface import interface_changes, operation_changes
+from pne_sym.review.interface import interface_changes, operation_changes, text_of
 from pne_sym.review.model import Model, by_path, printed_equations
-from pne_sym.review.placed import contradictions
+from pne_sym.review.named import contradictions
 from pne_sym.review.programs import SameText, first_statement, same_derivation, same_program
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.samples import length_of
@@ -44,6 +44,10 @@ from pne_sym.review.sandbox import best_isolation
 from pne_sym.review.values import Runs, takes_base
 
 TOLERANCE = 1e-9
+_NOT_RUN = (
+    "not what this pne-gen prints from the manifest, and nothing of a folder "
+    "is executed without --run"
+)
 
 
 def compare(
@@ -70,7 +74,7 @@ def compare(
         run: execute the NumPy modules, and compile and execute the C, of both.
         c: with `run`, the C too.
     """
-    found = Comparison(before.label, after.label, tolerance, (0, 0), (), (), (), ())
+    found = Comparison(before.label, after.label, tolerance)
     if before.folder is not None or after.folder is not None:
         before, after = _of_the_same_targets(before, after)
         files = file_differences(before.files, after.files, ())
@@ -80,16 +84,21 @@ def compare(
             return found
         before, after = reproduced(before), reproduced(after)
     alignment = align(before.manifest, after.manifest, (before.written, after.written))
-    of = _Pair(before, after, alignment, seed, run=run, c=c)
+    return _compared(found, _Pair(before, after, alignment, seed, run=run, c=c))
+
+
+def _compared(found: Comparison, of: _Pair) -> Comparison:
+    """What is known without running anything, then what running both tells."""
     found = replace(
         found,
         files=of.accounted(found.files),
-        deviations=(*before.deviations, *after.deviations),
-        operations=tuple(operation_changes(before, after)),
-        specification=_specification(before, after),
+        deviations=(*of.before.deviations, *of.after.deviations),
+        operations=tuple(operation_changes(of.before, of.after)),
+        specification=_specification(of.before, of.after),
     )
-    if not (of.ours or run):
-        return _as_printed(found, of, _reason(found.deviations))
+    if not (of.ours or of.run):
+        versions = " and ".join(dict.fromkeys(d.version for d in found.deviations))
+        return _as_printed(found, of, f"{versions}: {_NOT_RUN}")
     try:
         with np.errstate(all="ignore"):  # states that are impossible have no values
             return _with_values(found, of)
@@ -156,14 +165,6 @@ def _may_be_generated(path: str, before: Model, after: Model) -> bool:
     )
 
 
-def _reason(deviations: tuple[Deviation, ...]) -> str:
-    versions = " and ".join(dict.fromkeys(d.version for d in deviations))
-    return (
-        f"{versions}: not what this pne-gen prints from the manifest, and nothing of a folder "
-        "is executed without --run"
-    )
-
-
 def _with_values(found: Comparison, of: _Pair) -> Comparison:
     """The comparison with everything that is found by running both versions."""
     before, after = of.before, of.after
@@ -183,7 +184,9 @@ def _with_values(found: Comparison, of: _Pair) -> Comparison:
     if before.bundle and after.bundle and same_derivation(before.bundle, after.bundle):
         found = replace(found, statement=first_statement(before.bundle, after.bundle))
     if any(b.verdict is Verdict.DIFFERENT for b in found.blocks):
-        found = replace(found, contradictions=contradictions((before, after), runs.samples()))
+        found = replace(
+            found, contradictions=tuple(contradictions((before, after), runs.samples()))
+        )
     notes = [*_notes(before, after, run=of.run), *_notes_of_values(found, of, runs)]
     return _with_effects(replace(found, notes=tuple(notes)), of, runs.defaults)
 
@@ -283,7 +286,8 @@ def _not_run(before: Model, after: Model, run: bool) -> Iterator[BlockDifference
 def _constants(before: Model, after: Model, runs: Runs) -> Iterator[Change]:
     """What the modules export besides functions, where that is not what their manifests say."""
     old, new = (a.constants for a in runs.answers)
-    stated = [{**m.manifest["sizes"], **_home(m)} for m in (before, after)]
+    manifests = (before.manifest, after.manifest)
+    stated = [{**m["sizes"], "HOME_X": m["home"]["X"], "HOME_Q": m["home"]["q"]} for m in manifests]
     for name in dict.fromkeys((*old, *new)):
         if name not in old or name not in new:
             yield Change("added" if name in new else "removed", f"constant {name}")
@@ -291,15 +295,8 @@ def _constants(before: Model, after: Model, runs: Runs) -> Iterator[Change]:
             np.array_equal(np.asarray(side.get(name)), values[name])
             for side, values in zip(stated, (old, new), strict=True)
         ):
-            yield Change("changed", f"constant {name}", _text(old[name]), _text(new[name]))
-
-
-def _home(model: Model) -> dict[str, list[float]]:
-    return {"HOME_X": model.manifest["home"]["X"], "HOME_Q": model.manifest["home"]["q"]}
-
-
-def _text(value: object) -> str:
-    return str(np.asarray(value).tolist())[:200]
+            sides = (text_of(side[name])[:200] for side in (old, new))
+            yield Change("changed", f"constant {name}", *sides)
 
 
 def _compare_reports(before: str, after: str) -> list[EquationDifference]:
@@ -309,18 +306,9 @@ def _compare_reports(before: str, after: str) -> list[EquationDifference]:
     for equation in printed_equations(after):
         partner = old.pop((equation.id, equation.left), None)
         leg_type = equation.id.partition("-")[0] if "-" in equation.id else ""
-        old_text, new_text = (partner.formula if partner else ""), equation.formula
-        if partner is None:
-            verdict = Verdict.ADDED
-        elif old_text == new_text:
-            verdict, old_text, new_text = Verdict.IDENTICAL, "", ""
-        else:
-            verdict = Verdict.CHANGED
-        found.append(
-            EquationDifference(
-                equation.id, equation.left, equation.title, leg_type, verdict, old_text, new_text
-            )
-        )
+        about = (equation.id, equation.left, equation.title, leg_type)
+        texts = by_text(partner.formula if partner else "", equation.formula)
+        found.append(EquationDifference(*about, *texts))
     found += [
         EquationDifference(e.id, e.left, e.title, "", Verdict.REMOVED, before=e.formula)
         for e in old.values()

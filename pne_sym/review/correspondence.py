@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from pne_sym.model.kinematics import Array
 from pne_sym.review.alignment import Alignment
 
 Places = list[int | None]
@@ -64,6 +67,24 @@ class Correspondence:
         if argument in ("tau", "weights", "q_actuated", "tau_min", "tau_max", "reference"):
             return self.joints("actuators")
         return None
+
+    def carried(self, argument: str, value: Array, fill: float) -> Array:
+        """Values of an argument as the other version orders its entries.
+
+        Args:
+            argument: its name.
+            value: (..., n).
+            fill: what entries without counterpart have; of poses and displacements they are home's.
+        """
+        if (places := self.of(argument)) is None:
+            return value
+        found = np.full((*value.shape[:-1], len(places)), fill)
+        if argument in ("X", "X0", "q", "q0"):
+            found[...] = self.other["home"][argument[0]]
+        for k, place in enumerate(places):
+            if place is not None:
+                found[..., k] = value[..., place]
+        return found
 
 
 def same_platform(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:

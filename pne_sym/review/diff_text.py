@@ -6,6 +6,7 @@ First the specification, then equations, values, effects; rewritings and counts 
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -13,14 +14,14 @@ from pne_sym.review.difference import (
     BlockDifference,
     Change,
     Comparison,
-    Edit,
+    Contradiction,
     EquationDifference,
     Gap,
     Verdict,
 )
 from pne_sym.review.edit_words import FOLLOWING
 from pne_sym.review.effect_text import effect_lines
-from pne_sym.review.interface_text import interface_lines, listed, shortened
+from pne_sym.review.interface_text import before_after, interface_lines, listed, shortened
 
 _SHOWN = 6
 _LISTED = 60
@@ -110,13 +111,9 @@ def _cause(found: Comparison) -> str:
     if found.structure:
         e = found.structure[0]
         return f"the derivation, first at {e.id}, {e.title}"
-    if found.contradictions:
-        c = found.contradictions[0]
-        line = f", {c.line}" if c.line else ""
-        return f"the lowering, first at {c.equation} ({c.target}) in {c.function}{line}"
-    if found.statement is not None:
-        s = found.statement
-        return f"the lowering, first at {s.equation} ({s.target}) in {s.function}"
+    if (s := next(iter(found.contradictions), found.statement)) is not None:
+        line = f", {s.line}" if isinstance(s, Contradiction) and s.line else ""
+        return f"the lowering, first at {s.equation} ({s.target}) in {s.function}{line}"
     bad = [b for b in found.blocks if b.verdict not in _SAME]
     if bad:
         place = next((f"; first at {f.path} {f.where}" for f in found.files if not f.accounted), "")
@@ -152,15 +149,11 @@ def measured(found: Comparison) -> str:
 def _edits(found: Comparison) -> Iterator[str]:
     edits = found.specification or ()
     for e in edits[:_EDITS]:
-        yield from _edit(e)
+        yield f"  {e.words}  [{e.path}]"
+        if "->" not in e.words and "moved from joint" not in e.words:
+            yield from before_after(e.before, e.after)
     if len(edits) > _EDITS:
         yield from listed("and", (e.path for e in edits[_EDITS:]))
-
-
-def _edit(e: Edit) -> Iterator[str]:
-    yield f"  {e.words}  [{e.path}]"
-    if "->" not in e.words and "moved from joint" not in e.words:
-        yield from before_after(e.before, e.after)
 
 
 def _files(found: Comparison) -> Iterator[str]:
@@ -202,10 +195,7 @@ def _structure(found: Comparison) -> Iterator[str]:
         if not group:
             continue
         yield f"  {kind}: {_counted(group)}, in order of derivation"
-        for e in group[:_SHOWN]:
-            yield from _equation(e)
-        if len(group) > _SHOWN:
-            yield from listed("and", _rest(group))
+        yield from _equations(group)
     if found.statement is not None:
         s = found.statement
         yield (
@@ -237,18 +227,18 @@ def _unchanged(found: Comparison) -> str:
 
 def _counted(group: list[EquationDifference]) -> str:
     """How many, by leg type."""
-    types: dict[str, int] = {}
-    for e in group:
-        key = f"leg type {e.leg_type}" if e.leg_type else "platform"
-        types[key] = types.get(key, 0) + 1
+    types = Counter(f"leg type {e.leg_type}" if e.leg_type else "platform" for e in group)
     return ", ".join(f"{n} of {t}" for t, n in types.items())
 
 
-def _rest(group: list[EquationDifference]) -> list[str]:
-    """Places of equations that are not shown, of so many that they can be read."""
-    found = list(shortened(_place(e) for e in group[_SHOWN:]))
-    more = [f"and {len(found) - _LISTED} more"] if len(found) > _LISTED else []
-    return [*found[:_LISTED], *more]
+def _equations(group: list[EquationDifference]) -> Iterator[str]:
+    """The first of them; of further ones their places, of so many that they can be read."""
+    for e in group[:_SHOWN]:
+        yield from _equation(e)
+    rest = list(shortened(_place(e) for e in group[_SHOWN:]))
+    if rest:
+        more = [f"and {len(rest) - _LISTED} more"] if len(rest) > _LISTED else []
+        yield from listed("and", [*rest[:_LISTED], *more])
 
 
 def _place(e: EquationDifference) -> str:
@@ -258,11 +248,11 @@ def _place(e: EquationDifference) -> str:
 def _equation(e: EquationDifference) -> Iterator[str]:
     yield f"  ({_place(e)}) {e.title}"
     yield from before_after(e.before, e.after)
-    told = [_gap(e.gap)] if e.gap else []
+    told = _gap(e.gap) if e.gap else ""
     if e.gap and e.gap.size != float("inf"):
-        told = [f"{told[0]}: {e.gap.before:.6g} -> {e.gap.after:.6g}"]
+        told += f": {e.gap.before:.6g} -> {e.gap.after:.6g}"
     if told or e.note:
-        yield f"    {'; '.join([*told, *([e.note] if e.note else [])])}"
+        yield f"    {'; '.join(filter(None, (told, e.note)))}"
 
 
 # ---- values -----------------------------------------------------------------------------------
@@ -291,11 +281,8 @@ def told(block: BlockDifference) -> str:
 
 def _gap(gap: Gap) -> str:
     if gap.size == float("inf"):
-        return (
-            gap.where
-            if gap.where.startswith(("shapes", "the conditions"))
-            else f"at {gap.where} only one has a finite value"
-        )
+        says_it = gap.where.startswith(("shapes", "the conditions"))
+        return gap.where if says_it else f"at {gap.where} only one has a finite value"
     return f"largest relative difference {gap.size:.2g} at {gap.where}"
 
 
@@ -313,10 +300,7 @@ def _details(found: Comparison) -> Iterator[str]:
     rewritten = [e for e in found.equations if e.verdict is Verdict.EQUAL]
     if rewritten:
         yield f"  rewritten with equal values: {len(rewritten)} equations"
-        for e in rewritten[:_SHOWN]:
-            yield from _equation(e)
-        if len(rewritten) > _SHOWN:
-            yield from listed("and", _rest(rewritten))
+        yield from _equations(rewritten)
     kept = (Verdict.IDENTICAL, Verdict.FOLLOWS)
     renamed = [e for e in found.equations if "renamed:" in e.note and e.verdict in kept]
     for e in renamed[:_SHOWN]:
@@ -332,9 +316,3 @@ def _details(found: Comparison) -> Iterator[str]:
 
 def _counts(counts: tuple[int, ...]) -> str:
     return ", ".join(map(str, counts)) if any(counts) else "none"
-
-
-def before_after(before: str, after: str) -> Iterator[str]:
-    """A text before and after, as lines of a diff."""
-    yield from (f"-   {line}" for line in before.split("\n") if line)
-    yield from (f"+   {line}" for line in after.split("\n") if line)

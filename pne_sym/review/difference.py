@@ -20,6 +20,14 @@ class Verdict(enum.StrEnum):
     NOT_COMPARED = "not compared"
 
 
+def by_text(before: str, after: str) -> tuple[Verdict, str, str]:
+    """How two texts compare, of which one may be empty; then both, unless they are the same."""
+    if before == after:
+        return Verdict.IDENTICAL, "", ""
+    alone = Verdict.REMOVED if before else Verdict.ADDED
+    return Verdict.CHANGED if before and after else alone, before, after
+
+
 @dataclass(frozen=True)
 class Gap:
     """The largest relative difference of a quantity.
@@ -244,11 +252,11 @@ class Comparison:
     before: str
     after: str
     tolerance: float
-    samples: tuple[int, int]
-    blocks: tuple[BlockDifference, ...]
-    equations: tuple[EquationDifference, ...]
-    interface: tuple[Change, ...]
-    operations: tuple[OperationChange, ...]
+    samples: tuple[int, int] = (0, 0)
+    blocks: tuple[BlockDifference, ...] = ()
+    equations: tuple[EquationDifference, ...] = ()
+    interface: tuple[Change, ...] = ()
+    operations: tuple[OperationChange, ...] = ()
     notes: tuple[str, ...] = ()
     files: tuple[FileDifference, ...] = ()
     identical_files: int = 0

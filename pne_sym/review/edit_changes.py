@@ -7,16 +7,16 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pne_sym.review.edit_vectors import NAMED, angle, is_number, matrix, negative, tensor, vector
+import numpy as np
+
+from pne_sym.model.kinematics import Array
+from pne_sym.review.edit_vectors import NAMED, angle, is_number, matrix, tensor, vector
 
 Key = str | int
 _UNITS = {
     "mass": "kg", "pitch": "m/rad", "rate": "", "effort": "", "gear_ratio": "",
     "rotor_inertia": "kg m^2",
 }  # fmt: skip
-_AXES = ("axis", "axis_link", "axis_platform")
-_POINTS = ("base_point", "platform_point", "centre_of_mass", "offset", "fixed_centre")
-_FRAMES = ("base_frame", "rotation")
 _SHORT = 3
 """Entries of a list of numbers that is told in words."""
 CENTRE = "centre_of_mass"
@@ -67,12 +67,8 @@ def kind(old: Any, new: Any) -> str:
 def _change(key: str, old: Any, new: Any) -> str:
     """What happened to an entry."""
     name = key.replace("_", " ")
-    for of, told in (
-        ((*_AXES, "axes"), _turned), (_POINTS, _shifted), (_FRAMES, _rotated),
-        (("inertia",), _inertia),
-    ):  # fmt: skip
-        if key in of:
-            return f"{name} {told(old, new)}"
+    if (geometry := _GEOMETRY.get(key)) is not None:
+        return f"{name} {geometry(old, new)}"
     if (own := _OWN.get(key)) is not None and (told_so := own(old, new)):
         return told_so
     if is_number(old) and is_number(new):
@@ -145,7 +141,7 @@ def _gravity(old: Any, new: Any) -> str:
     a, b = vector(old), vector(new)
     if a is None or b is None:
         return ""
-    sizes = [math.hypot(*a), math.hypot(*b)]
+    sizes = [float(np.linalg.norm(v)) for v in (a, b)]
     value = f"{sizes[0]:.4g} -> {sizes[1]:.4g} m/s^2{_percent(*sizes)}"
     turn = angle(a, b)
     if turn < 1e-9:
@@ -190,9 +186,10 @@ def axis_words(axis: Any) -> str:
     if isinstance(axis, str):
         return axis
     own = vector(axis)
-    named = next((n for n, v in NAMED.items() if own == v), None)
-    turned = next((n for n, v in NAMED.items() if own and negative(own) == v), None)
-    return named or (f"-{turned}" if turned else ", ".join(map(str, axis)))
+    for name in (*NAMED, *(f"-{letter}" for letter in NAMED)):
+        if own is not None and np.array_equal(own, vector(name)):  # type: ignore[arg-type]
+            return name
+    return ", ".join(map(str, axis))
 
 
 # ---- vectors, rotations, inertias -------------------------------------------------------------
@@ -204,33 +201,28 @@ def _turned(old: Any, new: Any) -> str:
         if not all(isinstance(v, list) for v in (old, new)):
             return kind(old, new)
         return " -> ".join(", ".join(map(axis_words, v)) for v in (old, new))
-    if max(abs(x + y) for x, y in zip(a, b, strict=True)) < 1e-9:
+    if np.abs(a + b).max() < 1e-9:
         return "flipped"
     return f"turned by {_degrees(angle(a, b))}"
 
 
 def _shifted(old: Any, new: Any) -> str:
-    a, b = (vector(v) if v is not None else (0.0, 0.0, 0.0) for v in (old, new))
+    a, b = (vector(v) if v is not None else np.zeros(3) for v in (old, new))
     if a is None or b is None:
         return kind(old, new)
-    step = [y - x for x, y in zip(a, b, strict=True)]
-    if not any(a):
-        return f"set to {_length(math.hypot(*b))} from zero"
-    if not any(b):
-        return f"removed, was {_length(math.hypot(*a))}"
-    off = [n for n, x, y in zip("xyz", a, b, strict=True) if x == 0.0 and y != 0.0]
-    return (
-        f"moved by {_length(math.hypot(*step))}{f', off zero in {chr(44).join(off)}' * bool(off)}"
-    )
+    if not a.any():
+        return f"set to {_length(b)} from zero"
+    if not b.any():
+        return f"removed, was {_length(a)}"
+    off = ",".join(n for n, x, y in zip("xyz", a, b, strict=True) if x == 0.0 and y != 0.0)
+    return f"moved by {_length(b - a)}{f', off zero in {off}' if off else ''}"
 
 
 def _rotated(old: Any, new: Any) -> str:
     a, b = matrix(old), matrix(new)
     if a is None or b is None:
         return kind(old, new)
-    step = math.hypot(
-        *(y - x for r, s in zip(a, b, strict=True) for x, y in zip(r, s, strict=True))
-    )
+    step = float(np.linalg.norm(b - a))
     return f"turned by {_degrees(2.0 * math.asin(min(1.0, step / math.sqrt(8.0))))}"
 
 
@@ -238,16 +230,20 @@ def _inertia(old: Any, new: Any) -> str:
     a, b = tensor(old), tensor(new)
     if a is None or b is None:
         return kind(old, new)
-    products = [any(t[i][j] for i, j in ((0, 1), (0, 2), (1, 2))) for t in (a, b)]
+    products = [np.triu(t, 1).any() for t in (a, b)]
     if products[0] != products[1]:
         return "now full (products of inertia)" if products[1] else "no longer full"
-    if not any(x for row in a for x in row):
+    if not a.any():
         return "set, from zero"
-    size = max(abs(x) for row in a for x in row)
-    step = max(
-        (y - x for r, s in zip(a, b, strict=True) for x, y in zip(r, s, strict=True)), key=abs
-    )
-    return f"changed by up to {100.0 * abs(step) / size:.3g} %"
+    return f"changed by up to {100.0 * np.abs(b - a).max() / np.abs(a).max():.3g} %"
+
+
+_GEOMETRY = {
+    **dict.fromkeys(("axis", "axes", "axis_link", "axis_platform"), _turned),
+    **dict.fromkeys(("base_point", "platform_point", "offset", "fixed_centre", CENTRE), _shifted),
+    **dict.fromkeys(("base_frame", "rotation"), _rotated),
+    "inertia": _inertia,
+}
 
 
 def _percent(old: float, new: float) -> str:
@@ -260,7 +256,8 @@ def _percent(old: float, new: float) -> str:
     return f" ({100.0 * (new - old) / abs(old):+.3g} %)"
 
 
-def _length(metres: float) -> str:
+def _length(way: Array) -> str:
+    metres = float(np.linalg.norm(way))
     return f"{1000.0 * metres:.3g} mm" if metres < 1.0 else f"{metres:.4g} m"
 
 

@@ -6,7 +6,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-NAMED = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+import numpy as np
+
+from pne_sym.model.kinematics import Array
+
+NAMED = dict(zip("xyz", np.eye(3), strict=True))
 
 
 def is_number(value: Any) -> bool:
@@ -14,52 +18,36 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def angle(a: Sequence[float], b: Sequence[float]) -> float:
+def angle(a: Array, b: Array) -> float:
     """Between two vectors, rad; exact for small ones too."""
-    (x, y, z), (u, v, w) = a, b
-    return math.atan2(
-        math.hypot(y * w - z * v, z * u - x * w, x * v - y * u), x * u + y * v + z * w
-    )
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
 
 
-def negative(of: Sequence[float]) -> tuple[float, ...]:
-    """The opposite vector."""
-    return tuple(0.0 - x for x in of)
-
-
-def vector(value: Any) -> tuple[float, ...] | None:
+def vector(value: Any) -> Array | None:
     """Three components: of a list of two or three, or of the name of an axis."""
     if isinstance(value, str):
         unit = NAMED.get(value.lstrip("-"))
-        return (negative(unit) if value.startswith("-") else unit) if unit else None
+        return -unit if unit is not None and value.startswith("-") else unit
     if not isinstance(value, Sequence) or not all(map(is_number, value)):
         return None
-    found = tuple(float(x) for x in value)
-    return (*found, 0.0) if len(found) == 2 else found if len(found) == 3 else None
+    return np.array([*value, 0.0][:3], dtype=float) if len(value) in (2, 3) else None
 
 
-def matrix(value: Any) -> list[tuple[float, ...]] | None:
+def matrix(value: Any) -> Array | None:
     """Three rows; a rotation in the plane is one about z."""
     if not isinstance(value, Sequence) or isinstance(value, str) or len(value) not in (2, 3):
         return None
-    rows = [vector(row) for row in value]
-    found = [row for row in rows if row is not None]
-    if len(found) != len(value):
-        return None
-    return found if len(found) == 3 else [*found, (0.0, 0.0, 1.0)]
+    rows = [found for row in value if (found := vector(row)) is not None]
+    return np.array([*rows, NAMED["z"]][:3]) if len(rows) == len(value) else None
 
 
-def tensor(value: Any) -> list[tuple[float, ...]] | None:
+def tensor(value: Any) -> Array | None:
     """An inertia tensor in one of the forms of the specification."""
-    if value is None:
-        return [(0.0, 0.0, 0.0)] * 3
-    if is_number(value):
-        return [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, float(value))]
+    if value is None or is_number(value):
+        return np.diag([0.0, 0.0, float(value or 0.0)])
     if isinstance(value, Mapping):
         entry = {k: float(v) for k, v in value.items() if is_number(v)}
         names = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
-        return [tuple(entry.get(n, 0.0) for n in row) for row in names]
+        return np.array([[entry.get(n, 0.0) for n in row] for row in names])
     diagonal = vector(value)
-    if diagonal is not None:
-        return [tuple(x if i == j else 0.0 for j in range(3)) for i, x in enumerate(diagonal)]
-    return matrix(value)
+    return matrix(value) if diagonal is None else np.diag(diagonal)

@@ -18,20 +18,19 @@ FOLLOWING = ("home", "symbols")
 """Fields that follow from other edits: they come last, and no headline counts them."""
 
 
-def rank(path: str, told: str) -> tuple[int, str]:
+def rank(path: str, told: str) -> int:
     """What changes structure comes first; home, which follows, and notation last."""
     keys = [part.split("[")[0] for part in path.split(".")]
     if keys[0] in FOLLOWING:
-        return (20 + FOLLOWING.index(keys[0]), "")
+        return 20 + FOLLOWING.index(keys[0])
     if keys[0] == "leg_types" and len(keys) == 2:
-        return (3, "")
+        return 3
     if keys[0] == "legs" and keys[-1] in ("type", "order"):
-        return (1, "")
+        return 1
     if path.endswith("]") or "inserted" in told:
-        return (1, "")
-    known = next((k for k, of in enumerate(_RANKS) if keys[-1] in of), None)
-    added = told.endswith((" added", " removed"))
-    return (known if known is not None else 2 if added else len(_RANKS), "")
+        return 1
+    other = 2 if told.endswith((" added", " removed")) else len(_RANKS)
+    return next((k for k, of in enumerate(_RANKS) if keys[-1] in of), other)
 
 
 def words(

@@ -201,6 +201,7 @@ def _without_splits(raw: list[Raw]) -> list[Raw]:
 def _about(raw: list[Raw]) -> list[Raw]:
     """An inertia about another point is one edit, whatever its entries are now."""
     points = {r.path[:-1]: r for r in raw if r.path[-1] == "inertia_about"}
+    paths = [r.path for r in raw]
     found = []
     for r in raw:
         point = points.get(r.path[:-1])
@@ -210,9 +211,7 @@ def _about(raw: list[Raw]) -> list[Raw]:
                 for value, at in ((r.old, point.old), (r.new, point.new))
             ]
             found.append(Raw(point.path, pair[0], pair[1], r.joint))
-        elif r.path[-1] != "inertia_about" or not any(
-            s.path == (*r.path[:-1], "inertia") for s in raw
-        ):
+        elif r.path[-1] != "inertia_about" or (*r.path[:-1], "inertia") not in paths:
             found.append(r)
     return found
 
@@ -237,12 +236,8 @@ def _joined(raw: list[Raw]) -> Iterator[Raw]:
 
 
 def _told(r: Raw) -> Edit:
-    return Edit(
-        words(r.path, r.alike, r.joint, r.legs),
-        _text_of(r.path, r.legs),
-        "" if r.old is None else _shown(r.old),
-        "" if r.new is None else _shown(r.new),
-    )
+    sides = ("" if value is None else _shown(value) for value in (r.old, r.new))
+    return Edit(words(r.path, r.alike, r.joint, r.legs), _text_of(r.path, r.legs), *sides)
 
 
 def _text_of(path: tuple[Key, ...], legs: tuple[int, ...]) -> str:

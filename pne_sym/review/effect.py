@@ -6,20 +6,20 @@ the same for both where their platforms have the same coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from pne_sym.model.kinematics import Array
 from pne_sym.review.alignment import Alignment
-from pne_sym.review.c_driver import Array
 from pne_sym.review.correspondence import Correspondence, same_platform
 from pne_sym.review.difference import Effect
-from pne_sym.review.execution import Answer, ExecutionError, execute, packed
+from pne_sym.review.execution import Answer, ExecutionError
 from pne_sym.review.model import Model
-from pne_sym.review.samples import carried, random_values
-from pne_sym.review.sandbox import Isolation
+from pne_sym.review.samples import random_values
+from pne_sym.review.values import Set, asked_of, request_for
 
 STATES = 8
 _ASKED = ("M", "H", "inverse_dynamics", "condition")
@@ -83,34 +83,24 @@ def _carried(
 ) -> dict[str, Array]:
     """The same states as the other version orders them; home is its own."""
     own = Correspondence(before.manifest, after.manifest, alignment)
-    home = np.array(after.manifest["home"]["X"], dtype=float)
-    found = {"X": carried(states["X"], own.coordinates("X"), home)}
-    for name in ("V", "A"):
-        places = own.coordinates("V")
-        found[name] = carried(states[name], places, np.zeros(len(places)))
-    found["X"][0] = home
+    found = {name: own.carried(name, states[name], 0.0) for name in ("X", "V", "A")}
+    found["X"][0] = after.manifest["home"]["X"]
     return found
 
 
 def _facts(model: Model, states: Mapping[str, Array]) -> _Facts:
-    asked = {
-        "parameters": None,
-        "values": {n: packed(v) for n, v in states.items()},
-        "shared": [],
-        "consistent": True,
-        "only": list(_ASKED),
-    }
-    request = {"defaults": [], "sets": [asked]}
-    isolation = None if model.bundle is None else Isolation.NONE
-    answer = execute(model.label, model.name, model.python, request, isolation)
+    request = request_for(Set(None, dict(states)), consistent=True) | {"only": list(_ASKED)}
+    answer = asked_of(model, [request])
     count = len(states["X"])
     M, H, forces = (_result(answer, name, count) for name in ("M", "H", "inverse_dynamics"))
     if M.ndim != 3 or H.ndim != 3 or forces.ndim != 2:
         raise ExecutionError(f"{model.label}: its NumPy module answers with other shapes")
-    sigma = answer.calls[0].get(("condition", (), "batch"), [_singular_values(H)])[0]
+    own = [_where_finite(H, lambda good: np.linalg.svd(good, compute_uv=False))]
+    sigma = answer.calls[0].get(("condition", (), "batch"), own)[0]
+    values, none = _where_finite(M, np.linalg.eigvalsh), np.full(count, np.nan)
     with np.errstate(all="ignore"):
-        condition = sigma[:, 0] / sigma[:, -1] if sigma.shape[-1] else np.full(count, np.nan)
-    return _Facts(forces, _least(M), condition)
+        condition = sigma[:, 0] / sigma[:, -1] if sigma.shape[-1] else none
+    return _Facts(forces, values[:, 0] if values.shape[-1] else none, condition)
 
 
 def _result(answer: Answer, name: str, count: int) -> Array:
@@ -120,19 +110,12 @@ def _result(answer: Answer, name: str, count: int) -> Array:
     return found[0]
 
 
-def _least(M: Array) -> Array:
-    """Least eigenvalue; NaN where M has no value."""
-    good = np.isfinite(M).all(axis=(1, 2))
-    found = np.full(len(M), np.nan)
-    if good.any() and M.shape[-1]:
-        found[good] = np.linalg.eigvalsh(M[good])[:, 0]
-    return found
-
-
-def _singular_values(H: Array) -> Array:
-    good = np.isfinite(H).all(axis=(1, 2))
-    found = np.full((len(H), min(H.shape[1:])), np.nan)
-    found[good] = np.linalg.svd(H[good], compute_uv=False)
+def _where_finite(matrices: Array, of: Callable[[Array], Any]) -> Array:
+    """Figures of matrices, a row for each; NaN where a matrix has no value."""
+    good = np.isfinite(matrices).all(axis=(1, 2))
+    known = of(matrices[good])
+    found = np.full((len(matrices), known.shape[1]), np.nan)
+    found[good] = known
     return found
 
 
@@ -200,13 +183,10 @@ def _forces_around(old: Array, new: Array, names: list[tuple[str, str]]) -> Effe
     at = np.unravel_index(int(np.argmax(step)), step.shape)
     what, unit = names[int(at[1])]
     pair = f"{what.partition(' of ')[2]}: {old[at]:.4g} -> {new[at]:.4g} {unit}"
-    share = f"by {_share(float(step[at]))} the largest before, " if size[at[1]] else ""
+    times = f"{step[at]:.3g} times" if step[at] >= 10.0 else f"{100.0 * step[at]:.3g} % of"
+    share = f"by {times} the largest before, " if size[at[1]] else ""
     note = f"{share}{pair}" if step[at] > _SMALL else ""
     return _around("required forces", old, new, note, at)
-
-
-def _share(step: float) -> str:
-    return f"{100.0 * step:.3g} % of" if step < 10.0 else f"{step:.3g} times"
 
 
 def _figure_around(what: str, old: Array, new: Array) -> Effect:

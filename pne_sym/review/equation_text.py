@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from pne_sym.derivation import Equation, Frame, Given, ReciprocalBasis, leg_sums
+from pne_sym.derivation import Equation, Frame, ReciprocalBasis, leg_sums
 from pne_sym.review.plain import plain
 from pne_sym.vector.arrays import Relation, written
 
 
 def formula(equation: Equation) -> str:
-    """name = right-hand side = other forms."""
-    return joined(equation.name, [equation.rhs, *equation.forms])
-
-
-def joined(name: str, sides: Sequence[Any]) -> str:
-    """An equation with all its sides, those of equal text once."""
-    return " = ".join((name, *dict.fromkeys(map(plain, sides))))
+    """name = right-hand side = other forms, those of equal text once."""
+    return text_of(equation)[0]
 
 
 def relation_formula(relation: Relation) -> str:
@@ -33,24 +28,24 @@ _FORMS = {
 }
 
 
-def conditions(equation: Equation) -> str:
-    """What must hold, as one text."""
-    return str([(str(c.status), c.value, c.scale, c.power) for c in equation.conditions])
+def text_of(
+    equation: Equation, name: str = "", of: Callable[[Any], Any] = lambda expr: expr
+) -> tuple[str, str]:
+    """All that an equation says: its sides, and what must hold.
 
-
-def text_of(equation: Equation) -> tuple[str, ...]:
-    """All that an equation says."""
-    return (formula(equation), conditions(equation))
+    Args:
+        equation: the equation.
+        name: of what it defines; default its own.
+        of: expressions as they are to be shown.
+    """
+    sides = [of(side) for side in (equation.rhs, *equation.forms)]
+    held = [(str(c.status), of(c.value), of(c.scale), c.power) for c in equation.conditions]
+    return " = ".join((name or equation.name, *dict.fromkeys(map(plain, sides)))), str(held)
 
 
 def components(entries: Sequence[Any]) -> str:
     """(x, y, z)."""
     return f"({', '.join(map(str, entries))})"
-
-
-def given_text(given: Given) -> str:
-    """Components of what is given."""
-    return components(given.components)
 
 
 def frame_text(frame: Frame) -> str:

@@ -7,40 +7,30 @@ before, so that one mistake shows at its own place and not in all that follows.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from pne_sym.derivation import Derivation, Equation, names_in
 from pne_sym.review.alignment import Alignment
-from pne_sym.review.arrays import assembled, by_array
-from pne_sym.review.difference import EquationDifference, Gap, Verdict
+from pne_sym.review.difference import EquationDifference, Gap, Verdict, by_text
 from pne_sym.review.equation_text import (
     basis_facts,
     components,
-    conditions,
     formula,
     frame_text,
-    given_text,
-    joined,
     relation_formula,
     summed_types,
     text_of,
 )
-from pne_sym.review.evaluation import State, Structure
+from pne_sym.review.evaluation import Situation, State, Structure, assembled, by_array
 from pne_sym.review.measure import gap_between
 from pne_sym.review.naming import Names
 from pne_sym.review.plain import plain
 
-
-@dataclass(frozen=True)
-class Sample:
-    """A state: parameters of both versions by name, and X, V, A, q of both."""
-
-    before: dict[str, Any]
-    after: dict[str, Any]
-    vectors: tuple[dict[str, Any], dict[str, Any]]
+Sample = tuple[Situation, Situation]
+"""A state of both versions."""
 
 
 class DerivationComparer:
@@ -67,11 +57,11 @@ class DerivationComparer:
             for n in known
             if n in self.names.partner and self._comparable(self.names.partner[n], n)
         }
-        self.before = [State(self.a, s.before, s.vectors[0]) for s in samples]
-        self.after = [State(self.b, s.after, s.vectors[1]) for s in samples]
+        self.before = [State(self.a, at) for at, _ in samples]
+        self.after = [State(self.b, at) for _, at in samples]
         self.local = [
-            State(self.b, s.after, s.vectors[1], self._lender(old))
-            for s, old in zip(samples, self.before, strict=True)
+            State(self.b, new.at, self._lender(old))
+            for old, new in zip(self.before, self.after, strict=True)
         ]
         self.moved = set(self._turned_branches())
 
@@ -80,25 +70,19 @@ class DerivationComparer:
         if self.before:
             self._match_renamed()
         found = [*self._givens(), *(self._equation(e) for e in self.b.derivation.equations())]
-        gone = set(self.a.equations) - set(self.matched.values())
-        for equation in self.a.derivation.equations():
-            if equation.name in gone:
-                found.append(self._told(equation, Verdict.REMOVED, before=formula(equation)))
-        found += self._relations()
-        return (*found, *self._bases(), *(self._outputs() if self.before else ()))
+        kept = set(self.matched.values())
+        gone = (e for e in self.a.derivation.equations() if e.name not in kept)
+        found += (self._told(e, Verdict.REMOVED, before=formula(e)) for e in gone)
+        outputs = self._outputs() if self.before else ()
+        return (*found, *self._relations(), *self._bases(), *outputs)
 
     def _relations(self) -> Iterator[EquationDifference]:
         """Relations between whole arrays, by their text; functions are compared by value."""
         old, new = ({r.id: r for r in s.derivation.relations} for s in (self.a, self.b))
         for id_ in dict.fromkeys((*new, *old)):
             texts = [relation_formula(of[id_]) if id_ in of else "" for of in (old, new)]
-            verdict = Verdict.CHANGED if all(texts) else Verdict.REMOVED
-            verdict = Verdict.ADDED if not texts[0] else verdict
-            told = (id_, id_, (new.get(id_) or old[id_]).title, "")
-            if texts[0] == texts[1]:
-                yield EquationDifference(*told, Verdict.IDENTICAL)
-            else:
-                yield EquationDifference(*told, verdict, texts[0], texts[1])
+            title = (new.get(id_) or old[id_]).title
+            yield EquationDifference(id_, id_, title, "", *by_text(*texts))
 
     # ---- who is who -------------------------------------------------------------------
 
@@ -161,32 +145,33 @@ class DerivationComparer:
         old, new, legs = self._values(before, after)
         if not old or np.shape(old[0]) != np.shape(new[0]) or not np.any(old):
             return False
-        gap = gap_between(old, new, legs=legs)
-        return gap is None or gap.size <= self.tolerance
+        return self._beyond(gap_between(old, new, legs=legs)) is None
 
     # ---- values -------------------------------------------------------------------------
 
-    def _values(self, before: str, after: str) -> tuple[list[Any], list[Any], list[int | None]]:
-        """Values before, and after given those before; over samples and common legs."""
+    def _values(
+        self, before: str, after: str, expr: Any = None
+    ) -> tuple[list[Any], list[Any], list[int | None]]:
+        """Values before, and after (also of another expression) given those before.
+
+        They run over samples and common legs.
+        """
         old, new, legs = [], [], []
         for state, local in zip(self.before, self.local, strict=True):
             for leg in self._common_legs(before, after):
                 old.append(state.value(before, self._old(leg)))
-                new.append(local.own(after, leg))
+                new.append(local.own(after, leg) if expr is None else local.of(expr, leg))
                 legs.append(leg)
         return old, new, legs
 
     def _gap(self, before: str, after: str, expr: Any = None) -> Gap | None:
         """Local gap of a definition, or of another expression of the same value."""
-        old, new, legs = self._values(before, after)
-        if expr is not None:
-            new = [
-                local.of(expr, leg)
-                for local in self.local
-                for leg in self._common_legs(before, after)
-            ]
-        gap = gap_between(old, new, floor=self._size(after), legs=legs)
-        return gap if gap and gap.size > self.tolerance else None
+        old, new, legs = self._values(before, after, expr)
+        return self._beyond(gap_between(old, new, floor=self._size(after), legs=legs))
+
+    def _beyond(self, gap: Gap | None) -> Gap | None:
+        """A gap that is more than rounding."""
+        return gap if gap is not None and gap.size > self.tolerance else None
 
     def _size(self, name: str) -> float:
         """Size of the terms that a quantity is made of."""
@@ -203,8 +188,7 @@ class DerivationComparer:
         legs = self._common_legs(before, after)
         old = [s.value(before, self._old(leg)) for s in self.before for leg in legs]
         new = [s.value(after, leg) for s in self.after for leg in legs]
-        gap = gap_between(old, new, floor=self._size(after))
-        return gap is not None and gap.size > self.tolerance
+        return self._beyond(gap_between(old, new, floor=self._size(after))) is not None
 
     # ---- equations ----------------------------------------------------------------------
 
@@ -241,17 +225,13 @@ class DerivationComparer:
         texts = {"before": formula(before), "after": formula(after)}
         return self._told(after, verdict, gap=gap, note=note, **texts)
 
-    def _renamed_text(self, before: Equation, after: Equation) -> tuple[str, ...]:
+    def _renamed_text(self, before: Equation, after: Equation) -> tuple[str, str]:
         """The text after, with the names before."""
-        name = self.names.expression
-        return (
-            joined(before.name, [name(side) for side in (after.rhs, *after.forms)]),
-            str([(str(c.status), name(c.value), name(c.scale), c.power) for c in after.conditions]),
-        )
+        return text_of(after, before.name, self.names.expression)
 
     def _notes(self, before: Equation, after: Equation) -> Iterator[str]:
         """What else is not as it was."""
-        if before.name != after.name and not self._is_numbered(before.name, after.name):
+        if before.name not in (after.name, self.names.found.get(after.name)):
             yield f"renamed: {before.name} -> {after.name}"
         if before.id != after.id:
             yield f"was {before.id}"
@@ -264,10 +244,6 @@ class DerivationComparer:
                 count = f"{len(legs)} leg{'s' * (len(legs) > 1)}"
                 yield f"a sum over {count}, was over {len(old)}"
 
-    def _is_numbered(self, before: str, after: str) -> bool:
-        """Whether a name is another only by the alignment of joints and leg types."""
-        return self.names.found.get(after) == before
-
     def _worst(self, before: Equation, after: Equation) -> tuple[Gap | None, list[str]]:
         """First gap among the definition, its other forms and its conditions."""
         gap = self._gap(before.name, after.name)
@@ -277,7 +253,7 @@ class DerivationComparer:
             gap = self._gap(before.name, after.name, form)
             if gap is not None:
                 return gap, [f"in the form {plain(form)}"]
-        if conditions(before) != self._renamed_text(before, after)[1]:
+        if text_of(before)[1] != self._renamed_text(before, after)[1]:
             return self._condition_gap(before, after)
         return None, []
 
@@ -290,8 +266,7 @@ class DerivationComparer:
             for was, now in ((old.value, new.value), (old.scale, new.scale)):
                 a = [s.of(was, self._old(leg)) for s in self.before for leg in legs]
                 b = [s.of(now, leg) for s in self.local for leg in legs]
-                gap = gap_between(a, b)
-                if gap is not None and gap.size > self.tolerance:
+                if (gap := self._beyond(gap_between(a, b))) is not None:
                     return gap, [f"in the condition on {plain(now)}"]
         return None, []
 
@@ -306,10 +281,10 @@ class DerivationComparer:
                 self.moved.add(name)
                 continue
             old = self.a.givens[partner]
-            chain = self._chain(given.frame)
-            texts = given_text(old), self.names.as_before(components(given.components))
+            chain = set(self.b.ancestors(given.frame or None))
+            text = self.names.as_before(components(given.components))
             same_frame = self.names.partner.get(given.frame, given.frame) == old.frame
-            same = texts[0] == texts[1] and same_frame
+            same = text == components(old.components) and same_frame
             if same and not chain & turned:
                 continue
             gap = self._gap(partner, name) if self.before else None
@@ -318,24 +293,11 @@ class DerivationComparer:
             self.moved.add(name)
             if same:
                 continue
-            yield EquationDifference(
-                "given",
-                name,
-                self.b.derivation.notation[name].meaning,
-                self.b.leg_type.get(name, ""),
-                Verdict.DIFFERENT if gap is not None else Verdict.CHANGED,
-                f"{components(old.components)} in {old.frame}",
-                f"{components(given.components)} in {given.frame}",
-                gap,
-            )
-
-    def _chain(self, frame: str) -> set[str]:
-        found = set()
-        name: str | None = frame or None
-        while name is not None:
-            found.add(name)
-            name = self.b.frames[name].parent
-        return found
+            before, after = (f"{components(g.components)} in {g.frame}" for g in (old, given))
+            verdict = Verdict.CHANGED if gap is None else Verdict.DIFFERENT
+            meaning = self.b.derivation.notation[name].meaning
+            about = ("given", name, meaning, self.b.leg_type.get(name, ""), verdict)
+            yield EquationDifference(*about, before, after, gap)
 
     def _turned_frames(self) -> set[str]:
         """Frames after whose text is another, or that have no counterpart."""
@@ -372,16 +334,9 @@ class DerivationComparer:
             a = [assembled(s, old[array]) for s in self.before]
             b = [assembled(s, new[array]) for s in self.local]
             places = sorted({place for each in (*a, *b) for place in each})
-            gap = gap_between(*([[each.get(p, 0.0) for p in places] for each in x] for x in (a, b)))
-            different = gap is not None and gap.size > self.tolerance
-            if gap is not None:
-                place = places[int(gap.where.strip("[]"))]
-                gap = Gap(gap.size, str(list(place)), gap.before, gap.after)
-            yield EquationDifference(
-                "output",
-                array,
-                "where the values stand in the array",
-                "",
-                Verdict.DIFFERENT if different else Verdict.EQUAL,
-                gap=gap if different else None,
-            )
+            rows = ([[each.get(p, 0.0) for p in places] for each in x] for x in (a, b))
+            if (gap := self._beyond(gap_between(*rows))) is not None:
+                gap = replace(gap, where=str(list(places[int(gap.where.strip("[]"))])))
+            verdict = Verdict.EQUAL if gap is None else Verdict.DIFFERENT
+            about = ("output", array, "where the values stand in the array", "", verdict)
+            yield EquationDifference(*about, gap=gap)

@@ -1,4 +1,4 @@
-"""Numbers for every quantity of a derivation, straight from its equations.
+"""Numbers for every quantity of a derivation and its arrays, straight from its equations.
 
 All vectors and tensors have components in base axes. Only the derivation is
 used, not the lowering: what is compared is what the report says.
@@ -7,12 +7,14 @@ used, not the lowering: what is compared is what the report says.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Equation, Frame, Given, names_in
+from pne_sym.derivation import Derivation, Equation, Frame, Given, Output, names_in
 from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.vector import (
     Dot,
@@ -24,8 +26,16 @@ from pne_sym.vector import (
 )
 from pne_sym.vector.evaluate import evaluate
 
-_SUMS = (LegSum, VectorLegSum, TensorLegSum)
+SUMS = (LegSum, VectorLegSum, TensorLegSum)
 Borrow = Callable[[str, int | None], Any]
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Numbers to evaluate a model at: parameters by name, and one X, V, A, q, base."""
+
+    parameters: Mapping[str, Any]
+    vectors: Mapping[str, Any]
 
 
 class Structure:
@@ -39,7 +49,7 @@ class Structure:
         self.legs = {t.name: t.indices for t in derivation.leg_types}
         self.type_of_leg = {leg: t.name for t in derivation.leg_types for leg in t.indices}
         self.leg_type = self._leg_types()
-        self._made_of: dict[Any, tuple[list[Given] | None, list[str]]] = {}
+        self.made_of = cache(self._made_of)
 
     def _leg_types(self) -> dict[str, str]:
         """Name -> leg type, for quantities of which every leg of the type has its own."""
@@ -57,16 +67,11 @@ class Structure:
                     found[equation.name] = chapter.leg_type or owners[0]
         return found
 
-    def made_of(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
+    def _made_of(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
         """The given vectors that an expression is made of, and the vectors on the way.
 
         None where it is not made of such alone.
         """
-        if expr not in self._made_of:
-            self._made_of[expr] = self._down_to_givens(expr)
-        return self._made_of[expr]
-
-    def _down_to_givens(self, expr: Any) -> tuple[list[Given] | None, list[str]]:
         found: dict[str, Given] = {}
         names: list[str] = []
         stack = sorted(names_in(expr))
@@ -82,14 +87,27 @@ class Structure:
                 stack += sorted(names_in(equation.rhs))
         return list(found.values()) or None, names
 
+    def ancestors(self, frame: str | None) -> list[str]:
+        """A frame, and those that it stands in, from the inside."""
+        chain = []
+        while frame is not None:
+            chain.append(frame)
+            frame = self.frames[frame].parent
+        return chain
+
     def legs_of(self, name: str) -> tuple[int | None, ...]:
         """The legs that have a value of this name; (None,) where there is one in all."""
         return self.legs[self.leg_type[name]] if name in self.leg_type else (None,)
 
 
+def turned(rotation: Any, value: Any) -> Any:
+    """A vector or tensor in other axes."""
+    return rotation @ value if value.ndim == 1 else rotation @ value @ rotation.T
+
+
 def names_outside_sums(expr: Any) -> set[str]:
     """Names in an expression that do not stand within a sum over legs."""
-    if isinstance(expr, _SUMS):
+    if isinstance(expr, SUMS):
         return set()
     if hasattr(expr, "name") or not getattr(expr, "args", ()):
         return set(names_in(expr))
@@ -106,26 +124,16 @@ class State:
 
     Args:
         structure: of the derivation.
-        parameters: by field name.
-        vectors: X, V, A.
+        at: the parameters and the state.
         borrow: values to use instead of the derivation's own, or None where there is none.
     """
 
-    def __init__(
-        self,
-        structure: Structure,
-        parameters: Mapping[str, Any],
-        vectors: Mapping[str, Any],
-        borrow: Borrow | None = None,
-    ) -> None:
-        self.structure = structure
-        self.parameters = parameters
-        self.vectors = vectors
-        self.borrow = borrow
+    def __init__(self, structure: Structure, at: Situation, borrow: Borrow | None = None) -> None:
+        self.structure, self.at, self.borrow = structure, at, borrow
         self._values: dict[tuple[str, int | None], Any] = {}
         self._parts: dict[str, Any] = {}
-        self._rotations: dict[tuple[str, int | None], Any] = {}
-        self._inputs = _inputs(structure.derivation, vectors)
+        self.rotation = cache(self._rotation)
+        self._inputs = _inputs(structure.derivation, at.vectors)
 
     def value(self, name: str, leg: int | None) -> Any:
         """Value of a name; of its leg where every leg has its own."""
@@ -143,29 +151,20 @@ class State:
         structure = self.structure
         if name in structure.equations:
             return self.of(structure.equations[name].rhs, leg)
-        if name in structure.givens:
-            given = structure.givens[name]
-            if given.components == (given.symbol,):
-                return self._scalar(name, leg)
-            raw = self._components(given, leg)
-            if raw.ndim == 0:
-                return float(raw)
-            return self._raised(raw, given.frame, "base", leg)
-        return self._scalar(name, leg)
+        given = structure.givens.get(name)
+        if given is None or given.components == (given.symbol,):
+            return self._scalar(name, leg)
+        raw = self._components(given, leg)
+        return self._raised(raw, given.frame, "base", leg) if raw.ndim else float(raw)
 
     def of(self, expr: Any, leg: int | None) -> Any:
         """Value of an expression; sums run over the legs."""
         expr = self._reduced(expr, leg)
         return evaluate(expr, _Lookup(lambda name: self.value(name, leg)))
 
-    def rotation(self, frame: str, leg: int | None) -> Any:
+    def _rotation(self, name: str, leg: int | None) -> Any:
         """base_R_frame."""
-        key = (frame, leg)
-        if key not in self._rotations:
-            self._rotations[key] = self._rotation(self.structure.frames[frame], leg)
-        return self._rotations[key]
-
-    def _rotation(self, frame: Frame, leg: int | None) -> Any:
+        frame = self.structure.frames[name]
         if frame.parent is None:
             return np.eye(3)
         if frame.axes is not None:
@@ -192,13 +191,9 @@ class State:
             frame = self.structure.frames[name]
             assert frame.parent is not None
             if frame.axes is not None:
-                step = self._axes(frame, leg)
-                value = step @ value if value.ndim == 1 else step @ value @ step.T
-            elif value.ndim == 2:
-                step = self._step(frame, leg)
-                value = step @ value @ step.T
-            elif frame.angle is None or value[:2].any():
-                value = self._step(frame, leg) @ value
+                value = turned(self._axes(frame, leg), value)
+            elif value.ndim == 2 or frame.angle is None or value[:2].any():
+                value = turned(self._step(frame, leg), value)
             name = frame.parent
         return value
 
@@ -207,7 +202,9 @@ class State:
         assert frame.axes is not None
         assert frame.parent is not None
         made_of = [self._fixed(axis, leg) for axis in frame.axes]
-        if all(g and all(frame.parent in self._ancestors(x.frame) for x in g) for g in made_of):
+        if all(
+            g and all(frame.parent in self.structure.ancestors(x.frame) for x in g) for g in made_of
+        ):
             columns = [
                 self._product(g or [], axis, frame.parent, leg)
                 for g, axis in zip(made_of, frame.axes, strict=True)
@@ -239,7 +236,7 @@ class State:
         table = derivation.parameters
         if name in table.entries:
             field, index = table.entries[name]
-            value = np.asarray(self.parameters[field.name], dtype=float)
+            value = np.asarray(self.at.parameters[field.name], dtype=float)
             if field.leg_type:
                 value = value[self.structure.legs[field.leg_type].index(leg)]
             return float(value.reshape(-1)[index])
@@ -252,7 +249,7 @@ class State:
             raise KeyError(name)
         leg_type = self.structure.type_of_leg[leg]
         vector, indices = leg_inputs(derivation, name)
-        return float(self.vectors[vector][indices[self.structure.legs[leg_type].index(leg)]])
+        return float(self.at.vectors[vector][indices[self.structure.legs[leg_type].index(leg)]])
 
     def _reduced(self, expr: Any, leg: int | None) -> Any:
         """The expression with sums over legs, and products of given vectors, as symbols.
@@ -260,7 +257,7 @@ class State:
         A product of vectors given in links, and of what is made of such, is formed in their
         common frame: it may be needed to find the angle by which they are turned.
         """
-        if isinstance(expr, _SUMS):
+        if isinstance(expr, SUMS):
             value, leg_type = expr.args
             legs = self.structure.legs[str(leg_type)]
             return self._named(expr, sum(self.of(value, each) for each in legs))
@@ -282,7 +279,7 @@ class State:
 
     def _common(self, givens: list[Given]) -> str:
         """The frame that given vectors have in common."""
-        chains = [self._ancestors(given.frame) for given in givens]
+        chains = [self.structure.ancestors(given.frame) for given in givens]
         return next(f for f in chains[0] if all(f in chain for chain in chains))
 
     def _product(self, givens: list[Given], expr: Any, frame: str, leg: int | None) -> Any:
@@ -299,13 +296,6 @@ class State:
 
         return evaluate(expr, _Lookup(look))
 
-    def _ancestors(self, frame: str | None) -> list[str]:
-        chain = []
-        while frame is not None:
-            chain.append(frame)
-            frame = self.structure.frames[frame].parent
-        return chain
-
     def _named(self, expr: Any, value: Any) -> Any:
         """A symbol with a value of its own."""
         name = f"part {len(self._parts)}"
@@ -313,20 +303,50 @@ class State:
         return _symbol_like(expr, name)
 
 
-class _Lookup(Mapping[str, Any]):
-    """A mapping whose values are found when they are asked for."""
+def by_array(derivation: Derivation) -> dict[str, list[Output]]:
+    """The outputs that make up each array."""
+    found: dict[str, list[Output]] = {}
+    for output in derivation.outputs:
+        found.setdefault(output.array, []).append(output)
+    return found
+
+
+def assembled(state: State, outputs: list[Output]) -> dict[tuple[int, int], float]:
+    """Entries of an array by row and column."""
+    entries: dict[tuple[int, int], float] = {}
+    for o in outputs:
+        along_row = o.rows == ((0, 0),) and o.columns not in ((), ((0, 0),))
+        legs = state.structure.legs[o.leg_type] if o.leg_type else (None,)
+        for k, leg in enumerate(legs):
+            value = np.asarray(state.of(o.value, leg), dtype=float)
+            if o.frame != "base" and value.ndim:
+                value = turned(state.rotation(o.frame, leg).T, value)
+            r0 = o.leg_rows[k] if o.leg_rows else 0
+            c0 = o.leg_columns[k] if o.leg_columns else 0
+            for i, row in o.rows:
+                for j, column in o.columns or ((0, 0),):
+                    place = (row + r0, column + c0)
+                    entries[place] = _entry(value, i, j, along_row=along_row)
+                    if o.mirrored:
+                        entries[place[::-1]] = entries[place]
+    return entries
+
+
+def _entry(value: Any, i: int, j: int, *, along_row: bool) -> float:
+    if value.ndim == 0:
+        return float(value)
+    return float(value[i, j] if value.ndim == 2 else value[j if along_row else i])
+
+
+class _Lookup(dict[str, Any]):
+    """Values that are found when they are asked for."""
 
     def __init__(self, find: Callable[[str], Any]) -> None:
+        super().__init__()
         self._find = find
 
-    def __getitem__(self, name: str) -> Any:
+    def __missing__(self, name: str) -> Any:
         return self._find(name)
-
-    def __iter__(self) -> Any:
-        return iter(())
-
-    def __len__(self) -> int:
-        return 0
 
 
 def _symbol_like(expr: Any, name: str) -> Any:

@@ -17,30 +17,15 @@ from typing import Any
 
 import numpy as np
 
-from pne_sym.review.c_driver import Array, CAnswer, CCall, Key, driver_input, driver_text, parsed
+from pne_sym.model.kinematics import Array
+from pne_sym.review.c_driver import Asked, CCall, Key, driver_input, driver_text
+from pne_sym.review.manifests import SIZES
 from pne_sym.review.sandbox import Isolation, Limits, SandboxError, compiler, workplace
 
 _MOST_CALLS = 10_000
 _MOST_AXES = 8
 _RUNNER = Path(__file__).with_name("runner.py")
-
-
 _FLAGS = ("-std=c99", "-O0", "-w", "-ffp-contract=off", "-fno-diagnostics-color")
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What a C module is asked.
-
-    Attributes:
-        calls: of which functions.
-        sets: parameters by name (None: defaults), and values of arguments.
-        states: how many there are in every set.
-    """
-
-    calls: tuple[CCall, ...]
-    sets: Sequence[tuple[Mapping[str, Any] | None, Mapping[str, Array]]]
-    states: int
 
 
 class ExecutionError(ValueError):
@@ -49,13 +34,14 @@ class ExecutionError(ValueError):
 
 @dataclass(frozen=True)
 class Answer:
-    """What a module answers, by its own account.
+    """What a module, of Python or C, answers, by its own account.
 
     Attributes:
         defaults: of the parameters, by name.
-        constants: other exported values; numbers as arrays, else text.
+        constants: other exported values; numbers as arrays, else text. Of C the sizes NQ, NV,
+            NU, NC, NW, NJ, and home: HOME_X, then HOME_Q.
         states: per set the states that it was asked to make consistent.
-        calls: per set what every call returned.
+        calls: per set what every call returned; of C its status too.
         errors: calls that failed, with the reason.
     """
 
@@ -87,11 +73,9 @@ def execute(
     """
     try:
         with workplace(isolation) as place:
-            place.put({f"package/{model}/{name}": text for name, text in files.items()})
             asked = {**request, "model": model, "folder": f"{place.given}/package"}
-            place.put(
-                {"request.json": json.dumps(asked).encode(), "runner.py": _RUNNER.read_bytes()}
-            )
+            own = {"request.json": json.dumps(asked).encode(), "runner.py": _RUNNER.read_bytes()}
+            place.put({f"package/{model}/{name}": text for name, text in files.items()} | own)
             command = [sys.executable, "-I", f"{place.given}/runner.py"]
             said = place.run([*command, f"{place.given}/request.json"], Limits())
     except SandboxError as error:
@@ -102,12 +86,6 @@ def execute(
         raise ExecutionError(
             f"{label}: its NumPy module answers with something else than values"
         ) from error
-
-
-def packed(value: Any) -> dict[str, Any]:
-    """An array as JSON."""
-    array = np.ascontiguousarray(value, dtype="<f8")
-    return {"shape": list(np.shape(value)), "data": base64.b64encode(array.tobytes()).decode()}
 
 
 def _unpacked(value: Any) -> Array:
@@ -185,7 +163,7 @@ def execute_c(
     manifest: Mapping[str, Any],
     asked: Asked,
     isolation: Isolation | None,
-) -> CAnswer:
+) -> Answer:
     """Compile a C module with a program that calls all of its functions, and run that.
 
     Args:
@@ -203,22 +181,59 @@ def execute_c(
     if cc is None:
         raise ExecutionError(f"{label}: its C cannot be compiled: no cc, gcc or clang in /usr/bin")
     sources = {n: files.get(n, b"") for n in (f"{name}.h", f"{name}.c")}
-    driver = driver_text(name, manifest["parameters"], asked.calls, asked.states)
-    given = driver_input(manifest["parameters"], asked.calls, asked.sets)
+    program = {"driver.c": driver_text(manifest, asked).encode()}
+    program["input"] = driver_input(manifest, asked)
     try:
         with workplace(isolation) as place:
-            place.put({**sources, "driver.c": driver.encode(), "input": given})
+            place.put(sources | program)
             texts = [f"{place.given}/{n}" for n in ("driver.c", f"{name}.c")]
-            program = f"{place.made}/driver"
-            place.run(
-                [cc, *_FLAGS, f"-I{place.given}", *texts, "-o", program, "-lm"],
-                Limits(processes=True),
-                writes=True,
-            )
-            said = place.run([program, f"{place.given}/input"], Limits())
+            made = f"{place.made}/driver"
+            command = [cc, *_FLAGS, f"-I{place.given}", *texts, "-o", made, "-lm"]
+            place.run(command, Limits(processes=True), writes=True)
+            said = place.run([made, f"{place.given}/input"], Limits())
     except SandboxError as error:
         raise ExecutionError(f"{label}: its C cannot be compiled or run: {error}") from error
     try:
-        return parsed(said, manifest, asked.calls, len(asked.sets), asked.states)
+        return _parsed_c(said, manifest, asked)
     except ValueError as error:
         raise ExecutionError(f"{label}: its C answers with something else: {error}") from error
+
+
+def _parsed_c(said: bytes, manifest: Mapping[str, Any], asked: Asked) -> Answer:
+    """The program's output taken apart.
+
+    Raises:
+        ValueError: it is longer or shorter than it should be.
+    """
+    if len(said) % 8:
+        raise ValueError("not doubles")
+    rest = np.frombuffer(said, dtype="<f8").astype(np.float64)
+
+    def take(*shape: int) -> Array:
+        nonlocal rest
+        count = math.prod(shape)
+        if len(rest) < count:
+            raise ValueError("too short")
+        part, rest = rest[:count], rest[count:]
+        return part.reshape(shape)
+
+    def returned(c: CCall) -> list[Array]:
+        status = take(asked.states)
+        return [*(take(asked.states, size) for _, size in c.outputs), status]
+
+    own = manifest["sizes"]
+    facts: dict[str, Array | str] = {"sizes": take(len(SIZES)), "home": take(own["NQ"] + own["NJ"])}
+    defaults = {p["name"]: take(*p["shape"]) for p in manifest["parameters"]}
+    found: list[dict[Key, list[Array]]] = []
+    for _ in asked.sets:
+        values: dict[Key, list[Array]] = {
+            ("prepare", (), "single"): [np.repeat(take(1), asked.states)]
+        }
+        for c in asked.calls:
+            values[c.function, c.given, "single"] = returned(c)
+            failed = np.repeat(take(1), asked.states)
+            values[c.function, c.given, "batch"] = [*returned(c), failed]
+        found.append(values)
+    if len(rest):
+        raise ValueError("too long")
+    return Answer(defaults, facts, calls=found)

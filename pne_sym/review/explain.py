@@ -73,6 +73,10 @@ class Explanation:
     used_by: tuple[Related, ...]
 
 
+def _all(derivation: Derivation) -> tuple[Equation, ...]:
+    return (*derivation.equations(), *derivation.rotations())
+
+
 def find_equation(derivation: Derivation, wanted: str) -> Equation:
     """The equation of an id (ups-rho2_1) or of the name that it defines.
 
@@ -82,7 +86,7 @@ def find_equation(derivation: Derivation, wanted: str) -> Equation:
     Raises:
         UnknownEquationError: there is none; the message has the nearest ids and names.
     """
-    equations = (*derivation.equations(), *derivation.rotations())
+    equations = _all(derivation)
     known = {f"{c.id}{k}": e for c in derivation.chapters for k, e in enumerate(c.equations, 1)}
     known |= {key: e for e in equations for key in (e.name, e.id)}
     found = known.get(wanted) or known.get(full_name(derivation, wanted))
@@ -114,7 +118,7 @@ def find_relation(derivation: Derivation, wanted: str) -> Relation | None:
 def find_equations(derivation: Derivation, wanted: str) -> list[Equation]:
     """The same; a name without its leg type is that of every type that has it."""
     names = full_names(derivation, wanted)
-    found = [e for e in (*derivation.equations(), *derivation.rotations()) if e.name in names]
+    found = [e for e in _all(derivation) if e.name in names]
     return found if len(found) > 1 else [find_equation(derivation, wanted)]
 
 
@@ -140,7 +144,11 @@ def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Expla
         or any(equation in e for (i, _), e in rotations.items() if i == c.id)
     )
     used = printer if chapter.leg_type else printer.with_index()
-    uses = {e.name: names_in(e.rhs) for e in (*derivation.equations(), *derivation.rotations())}
+    uses = {e.name: names_in(e.rhs) for e in _all(derivation)}
+    users: dict[str, set[str]] = {}
+    for name, used_names in uses.items():
+        for each in used_names:
+            users.setdefault(each, set()).add(name)
     return Explanation(
         equation,
         derivation.notation[equation.name],
@@ -150,7 +158,7 @@ def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Expla
         f"{used.doprint(equation.lhs)} = {used.doprint(equation.rhs)}",
         tuple(_related(derivation, _reach(uses, equation.name, transitively))),
         (
-            *_related(derivation, _reach(_inverted(uses), equation.name, transitively)),
+            *_related(derivation, _reach(users, equation.name, transitively)),
             *_outputs(derivation, equation.name),
         ),
     )
@@ -167,27 +175,16 @@ def _reach(graph: Mapping[str, Set[str]], start: str, transitively: bool) -> set
     return found
 
 
-def _inverted(graph: Mapping[str, Set[str]]) -> dict[str, set[str]]:
-    users: dict[str, set[str]] = {}
-    for name, used in graph.items():
-        for each in used:
-            users.setdefault(each, set()).add(name)
-    return users
-
-
 def _related(derivation: Derivation, names: set[str]) -> Iterable[Related]:
     """The quantities of these names: given ones first, then in order of derivation."""
-    equations = {e.name: e for e in (*derivation.equations(), *derivation.rotations())}
+    equations = {e.name: e for e in _all(derivation)}
     for name in sorted(names - equations.keys()):
-        quantity = derivation.notation.get(name)
-        if name in derivation.parameters.entries:
-            field = derivation.parameters.entries[name][0]
-            yield Related("parameter", name, quantity.meaning if quantity else field.meaning)
-        elif quantity is not None:
-            yield Related("given", name, quantity.meaning)
-        else:
-            branch = name in derivation.parameters.branches
-            yield Related("given", name, "sign of the assembly branch" if branch else "an input")
+        table, quantity = derivation.parameters, derivation.notation.get(name)
+        known = "sign of the assembly branch" if name in table.branches else "an input"
+        if name in table.entries:
+            known = table.entries[name][0].meaning
+        id_ = "parameter" if name in table.entries else "given"
+        yield Related(id_, name, quantity.meaning if quantity else known)
     for name, equation in equations.items():
         if name in names:
             yield Related(equation.id, name, equation.title)

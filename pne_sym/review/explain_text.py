@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 
 from pne_sym.backends import registry
@@ -22,10 +21,9 @@ from pne_sym.review.code import (
 )
 from pne_sym.review.equation_text import relation_formula
 from pne_sym.review.explain import Explanation, Related, explain, find_equations, find_relation
+from pne_sym.review.interface_text import wrapped
 from pne_sym.review.plain import plain
 from pne_sym.vector.arrays import Relation
-
-_WIDTH = 98
 
 
 def spec_text(manipulator: Manipulator) -> str:
@@ -88,8 +86,7 @@ def _equation_lines(
     if stage in (None, "program"):
         found = program_passages(bundle, equation.id)
     else:
-        of = registry.target(stage)
-        found = passages(_code(bundle, of), equation.id, _syntax(of))
+        found = _in_code(bundle, stage, equation.id)
     if stage is None:
         yield ""
         if found:
@@ -115,8 +112,7 @@ def _relation_lines(bundle: Bundle, stage: str | None, relation: Relation) -> It
         yield from [""] * (stage is None)
         yield from _passages(step_passages(bundle, relation.id))
     elif stage != "derivation":
-        of = registry.target(stage)
-        yield from _passages(passages(_code(bundle, of), relation.id, _syntax(of)))
+        yield from _passages(_in_code(bundle, stage, relation.id))
 
 
 def _whole(bundle: Bundle, stage: str | None) -> Iterator[str]:
@@ -137,6 +133,12 @@ def _code(bundle: Bundle, of: Target) -> dict[str, str]:
     """The texts of a target in which statements stand under the ids of equations."""
     texts = sorted(emit_target(bundle, of).items())
     return {path: text for path, text in texts if of.has_code(bundle.name, path)}
+
+
+def _in_code(bundle: Bundle, target: str, id_: str) -> tuple[Passage, ...]:
+    """The statements of a target that stand under an id."""
+    of = registry.target(target)
+    return passages(_code(bundle, of), id_, _syntax(of))
 
 
 def _syntax(of: Target) -> Syntax:
@@ -185,11 +187,4 @@ def _list(title: str, related: Iterable[Related]) -> Iterator[str]:
 
 def _hanging(start: str, text: str) -> list[str]:
     """A text that may take more lines, indented under its start."""
-    return textwrap.wrap(
-        text,
-        _WIDTH,
-        initial_indent=start,
-        subsequent_indent=" " * len(start),
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    return wrapped(start, " " * len(start), text)

@@ -14,11 +14,6 @@ _FAR = 30
 _ID = re.compile(rb"\s+(?:#|/\*|//|%)\s*\(([A-Za-z][A-Za-z0-9_-]{0,200})\)")
 
 
-def differing(before: Folder, after: Folder) -> list[str]:
-    """The files that are not equal to the byte, or stand on one side only; sorted."""
-    return sorted(p for p in {*before, *after} if before.get(p) != after.get(p))
-
-
 def file_differences(
     before: Folder, after: Folder, accounted: Collection[str]
 ) -> tuple[FileDifference, ...]:
@@ -31,7 +26,8 @@ def file_differences(
     """
     return tuple(
         _difference(path, before.get(path), after.get(path), path in accounted)
-        for path in differing(before, after)
+        for path in sorted({*before, *after})
+        if before.get(path) != after.get(path)
     )
 
 

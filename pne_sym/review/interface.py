@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,9 @@ from pne_sym.review.difference import Change, OperationChange
 from pne_sym.review.manifests import COUNTS
 from pne_sym.review.model import Model, paths_of
 
+Table = dict[str, Any]
+Pair = tuple[Table | None, Table | None]
+"""Before and after; None where there is no counterpart."""
 _PLAIN = ("space", "sizes", "joints", "actuators", "extra", "constraints", "home")
 
 
@@ -29,16 +32,17 @@ def interface_changes(
         defaults: of both by the paths of the full form before; none where they are not known.
         alignment: of legs and joints.
     """
-    yield from _parameters(before, after, alignment)
+    yield from _matched("parameter", _parameters(before, after, alignment), _described)
     if defaults:
         yield from _defaults(*defaults)
     yield from _legs(before, after, alignment)
-    yield from _leg_types(before.manifest, after.manifest, alignment)
+    leg_types = _leg_types(before.manifest, after.manifest, alignment)
+    yield from _matched("leg type", leg_types, _leg_type)
     for name in ("X", "V", "wrench"):
         a, b = (m.manifest["coordinates"][name] for m in (before, after))
         yield from _changed(f"coordinates {name}", ", ".join(a), ", ".join(b))
     if before.functions and after.functions:
-        yield from _functions(before.functions, after.functions)
+        yield from _matched("function", _functions(before, after), _signature)
     for key in _PLAIN:
         yield from _changed(key, str(before.manifest.get(key)), str(after.manifest.get(key)))
 
@@ -48,36 +52,39 @@ def _changed(what: str, before: str, after: str) -> Iterator[Change]:
         yield Change("changed", what, before, after)
 
 
-def _parameters(before: Model, after: Model, alignment: Alignment) -> Iterator[Change]:
-    """Parameters added, removed, renamed: the same where they stand at the same paths."""
+def _matched(
+    kind: str, pairs: Iterable[Pair], described: Callable[[Table], str]
+) -> Iterator[Change]:
+    """Tables of a kind that are new, gone, renamed, or described otherwise."""
+    for old, new in pairs:
+        if old is None and new is not None:
+            yield Change("added", f"{kind} {new['name']}", after=described(new))
+        elif old is not None and new is None:
+            yield Change("removed", f"{kind} {old['name']}", before=described(old))
+        elif old is not None and new is not None:
+            if old["name"] != new["name"]:
+                yield Change("renamed", kind, old["name"], new["name"])
+            yield from _changed(f"{kind} {new['name']}", described(old), described(new))
+
+
+def _parameters(before: Model, after: Model, alignment: Alignment) -> Iterator[Pair]:
+    """Parameters before and after: the same where they stand at the same paths."""
     free = list(before.parameters)
     for parameter in after.parameters:
         partner = _partner(parameter, free, alignment)
-        if partner is None:
-            yield Change("added", f"parameter {parameter['name']}", after=_described(parameter))
-            continue
-        free.remove(partner)
-        if partner["name"] != parameter["name"]:
-            yield Change("renamed", "parameter", partner["name"], parameter["name"])
-        yield from _changed(
-            f"parameter {parameter['name']}", _described(partner), _described(parameter)
-        )
-    for parameter in free:
-        yield Change("removed", f"parameter {parameter['name']}", before=_described(parameter))
+        if partner is not None:
+            free.remove(partner)
+        yield partner, parameter
+    yield from ((parameter, None) for parameter in free)
 
 
-def _functions(before: dict[str, Any], after: dict[str, Any]) -> Iterator[Change]:
-    """Public functions and their arguments."""
-    for name, function in after.items():
-        if name not in before:
-            yield Change("added", f"function {name}", after=_signature(function))
-        else:
-            yield from _changed(f"function {name}", _signature(before[name]), _signature(function))
-    for name in (n for n in before if n not in after):
-        yield Change("removed", f"function {name}", before=_signature(before[name]))
+def _functions(before: Model, after: Model) -> Iterator[Pair]:
+    """Public functions, by their names."""
+    old, new = ({n: {"name": n, **f} for n, f in m.functions.items()} for m in (before, after))
+    yield from ((old.get(name), new.get(name)) for name in new | old)
 
 
-def _signature(function: dict[str, Any]) -> str:
+def _signature(function: Table) -> str:
     sides = [
         ", ".join(f"{n} ({size})" for n, size in function[side].items())
         for side in ("inputs", "outputs")
@@ -85,16 +92,14 @@ def _signature(function: dict[str, Any]) -> str:
     return f"{sides[0]} -> {sides[1]}"
 
 
-def _partner(
-    parameter: dict[str, Any], among: list[dict[str, Any]], alignment: Alignment
-) -> dict[str, Any] | None:
+def _partner(parameter: Table, among: list[Table], alignment: Alignment) -> Table | None:
     paths = {alignment.canonical(path) for path in paths_of(parameter)}
     shared = [p for p in among if paths & set(paths_of(p))]
     named = [p for p in shared if p["name"] == parameter["name"]]
     return next(iter(named or shared), None)
 
 
-def _described(parameter: dict[str, Any]) -> str:
+def _described(parameter: Table) -> str:
     zeros = parameter.get("zero_by_structure")
     fixed = f", entries {zeros} zero by structure" if zeros else ""
     return f"{parameter['unit']}, shape {parameter['shape']}{fixed}"
@@ -103,10 +108,11 @@ def _described(parameter: dict[str, Any]) -> str:
 def _defaults(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
     for path, value in new.items():
         if path in old and not np.array_equal(old[path], value):
-            yield Change("changed", f"default of {path}", _text(old[path]), _text(value))
+            yield Change("changed", f"default of {path}", text_of(old[path]), text_of(value))
 
 
-def _text(value: Any) -> str:
+def text_of(value: Any) -> str:
+    """Numbers of an array, or what stands for them."""
     return str(np.asarray(value).tolist())
 
 
@@ -121,26 +127,15 @@ def _legs(before: Model, after: Model, alignment: Alignment) -> Iterator[Change]
     yield from _changed("legs", ", ".join(old.values()), ", ".join(now))
 
 
-def _leg_types(
-    before: dict[str, Any], after: dict[str, Any], alignment: Alignment
-) -> Iterator[Change]:
+def _leg_types(before: Table, after: Table, alignment: Alignment) -> Iterator[Pair]:
     """Leg types, matched by their legs."""
     old, new = ({t["name"]: t for t in m["leg_types"]} for m in (before, after))
-    taken = set()
     for name, info in new.items():
-        partner = alignment.types.get(name)
-        if partner is None or partner in taken:
-            yield Change("added", f"leg type {name}", after=_leg_type(info))
-            continue
-        taken.add(partner)
-        if partner != name:
-            yield Change("renamed", "leg type", partner, name)
-        yield from _changed(f"leg type {name}", _leg_type(old[partner]), _leg_type(info))
-    for name in (n for n in old if n not in taken):
-        yield Change("removed", f"leg type {name}", before=_leg_type(old[name]))
+        yield old.pop(alignment.types.get(name, ""), None), info
+    yield from ((info, None) for info in old.values())
 
 
-def _leg_type(info: dict[str, Any]) -> str:
+def _leg_type(info: Table) -> str:
     legs = ", ".join(str(leg + 1) for leg in info["legs"])
     branches = "; ".join(f"{n} {signs}" for n, signs in info["branches"].items())
     several = "s" * (len(info["legs"]) > 1)

@@ -78,8 +78,13 @@ def _single(c: Change) -> Iterator[str]:
         yield f"  changed: sizes {_sizes(c)}"
         return
     yield f"  {c.kind}: {c.what}"
-    yield from (f"-   {_short(c.before)}" for _ in range(bool(c.before)))
-    yield from (f"+   {_short(c.after)}" for _ in range(bool(c.after)))
+    yield from before_after(_short(c.before), _short(c.after))
+
+
+def before_after(before: str, after: str) -> Iterator[str]:
+    """A text before and after, as lines of a diff."""
+    yield from (f"-   {line}" for line in before.split("\n") if line)
+    yield from (f"+   {line}" for line in after.split("\n") if line)
 
 
 def _sizes(c: Change) -> str:
@@ -112,11 +117,16 @@ def shortened(ids: Iterable[str]) -> Iterator[str]:
 
 def listed(start: str, names: Iterable[str]) -> list[str]:
     """Names in as few lines as there is room for."""
+    return wrapped("  ", "    ", f"{start} {', '.join(names)}")
+
+
+def wrapped(first: str, further: str, text: str) -> list[str]:
+    """A text in lines that begin so."""
     return textwrap.wrap(
-        f"{start} {', '.join(names)}",
+        text,
         _WIDTH,
-        initial_indent="  ",
-        subsequent_indent="    ",
+        initial_indent=first,
+        subsequent_indent=further,
         break_long_words=False,
         break_on_hyphens=False,
     )

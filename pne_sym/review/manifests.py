@@ -18,9 +18,7 @@ FORMATS = (1, 2)
 _LONGEST_TEXT = 2000
 _LARGEST = 100_000
 """Of any count, size or number of entries: hundreds of times what a model has."""
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,99}")
-_PATH = re.compile(r"[A-Za-z0-9_.\[\]]{1,200}")
-_SIZES = ("NQ", "NV", "NU", "NC", "NW", "NJ")
+SIZES = ("NQ", "NV", "NU", "NC", "NW", "NJ")
 COUNTS = ("mul", "add", "div", "sqrt", "trig")
 Check = Callable[[Any], bool]
 
@@ -88,20 +86,8 @@ def _is_text(value: Any) -> bool:
     return isinstance(value, str) and len(value) <= _LONGEST_TEXT
 
 
-def _is_name(value: Any) -> bool:
-    return isinstance(value, str) and _NAME.fullmatch(value) is not None
-
-
-def _is_path(value: Any) -> bool:
-    return isinstance(value, str) and _PATH.fullmatch(value) is not None
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict)
-
-
-def _is_sign(value: Any) -> bool:
-    return isinstance(value, int) and value in (-1, 1)
+def _matching(pattern: re.Pattern[str]) -> Check:
+    return lambda value: isinstance(value, str) and pattern.fullmatch(value) is not None
 
 
 def _list(check: Check) -> Check:
@@ -125,6 +111,8 @@ def _fields(required: Mapping[str, Check], optional: Mapping[str, Check] | None 
     )
 
 
+_is_name = _matching(re.compile(r"[A-Za-z][A-Za-z0-9_]{0,99}"))
+_is_path = _matching(re.compile(r"[A-Za-z0-9_.\[\]]{1,200}"))
 _pairs = _list(lambda pair: _list(_is_count)(pair) and len(pair) == 2)
 _MOST_FUNCTIONS = 500
 _any_functions = _map(
@@ -140,14 +128,14 @@ _any_functions = _map(
 )
 _ENTRIES_OF_2: dict[str, Check] = {
     "functions": lambda value: _any_functions(value) and len(value) <= _MOST_FUNCTIONS,
-    "specification": _is_table,
+    "specification": lambda value: isinstance(value, dict),
 }
 _ENTRIES: dict[str, Check] = {
     "name": _is_name,
     "format": lambda value: _is_count(value) and value in FORMATS,
     "title": _is_text,
     "space": _is_text,
-    "sizes": _fields(dict.fromkeys(_SIZES, _is_count)),
+    "sizes": _fields(dict.fromkeys(SIZES, _is_count)),
     "coordinates": _fields(dict.fromkeys(("X", "V", "wrench"), _list(_is_text))),
     "joints": _pairs,
     "actuators": _pairs,
@@ -160,7 +148,7 @@ _ENTRIES: dict[str, Check] = {
                 "name": _is_name,
                 "architecture": _is_text,
                 "legs": _list(_is_count),
-                "branches": _map(_list(_is_sign)),
+                "branches": _map(_list(lambda sign: isinstance(sign, int) and sign in (-1, 1))),
             }
         )
     ),

@@ -38,10 +38,6 @@ def gap_between(
         return None
     at = np.unravel_index(int(np.argmax(relative)), relative.shape)
     where = f"[{', '.join(str(int(k)) for k in at[1:])}]" if len(at) > 1 else "the value"
-    leg = legs[int(at[0])] if legs else None
-    return Gap(
-        float(relative[at]),
-        where if leg is None else f"{where} of leg {leg + 1}",
-        float(a[at]),
-        float(b[at]),
-    )
+    if legs and (leg := legs[int(at[0])]) is not None:
+        where += f" of leg {leg + 1}"
+    return Gap(float(relative[at]), where, float(a[at]), float(b[at]))

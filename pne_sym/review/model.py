@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,11 +16,16 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.emission import emit, emit_target
 from pne_sym.backends.target import is_signed
 from pne_sym.contents import recorded_targets
+from pne_sym.generation import InputError, find
+from pne_sym.model.files import parse
 from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.reader import from_text
 from pne_sym.pipeline import compile_bundle
 from pne_sym.review.difference import Deviation
 from pne_sym.review.files import as_folder
-from pne_sym.review.folders import Entry, Folder
+from pne_sym.review.folders import Folder
+from pne_sym.review.manifests import manifest_of
+from pne_sym.review.sources import Source
 
 _LEG = re.compile(r"legs\[i\]")
 _ANCHOR = re.compile(r"\*\*\((?P<id>[\w-]+)\)\*\*\s*(?P<title>.*)")
@@ -37,7 +42,6 @@ class Model:
         label: what the user called it.
         name: of the model; of a folder what its files are called by.
         manifest: the manifest, parsed and checked.
-        source: text of the NumPy module; of our own text it is printed when it is needed.
         bundle: derivation and program, where this pne-gen has derived it: from a
             specification, or from that in the manifest of a folder which is what this
             pne-gen prints.
@@ -50,17 +54,13 @@ class Model:
     label: str
     name: str
     manifest: dict[str, Any]
-    source: str
     bundle: Bundle | None = field(default=None, repr=False)
     written: Mapping[str, Any] | None = field(default=None, repr=False)
     folder: Folder | None = field(default=None, repr=False)
     deviations: tuple[Deviation, ...] = ()
     targets: tuple[str, ...] = field(default_factory=registry.default)
-
-    @cached_property
-    def _printed(self) -> dict[str, dict[str, bytes]]:
-        """Our own text by target, printed once."""
-        return {}
+    _printed: dict[str, dict[str, bytes]] = field(default_factory=dict, init=False, repr=False)
+    """Our own text by target, printed once."""
 
     @property
     def parameters(self) -> list[dict[str, Any]]:
@@ -77,7 +77,8 @@ class Model:
         """All files: of the folder, or those that would be generated."""
         if self.folder is not None:
             return self.folder
-        return as_folder(emit(self._derived, self.targets))
+        assert self.bundle is not None
+        return as_folder(emit(self.bundle, self.targets))
 
     def of_target(self, name: str) -> dict[str, bytes]:
         """The files of a target: our own text wherever there is one."""
@@ -85,7 +86,7 @@ class Model:
             owner = registry.target(name)
             return {p: text for p, text in self._of_folder.items() if owner.owns(self.name, p)}
         if name not in self._printed:
-            texts = _texts(self.bundle, name)
+            texts = emit_target(self.bundle, registry.target(name))
             self._printed[name] = {p: text.encode() for p, text in texts.items()}
         return self._printed[name]
 
@@ -102,8 +103,7 @@ class Model:
         """The NumPy package that is run; of a folder all its files."""
         if self.bundle is None:
             return self._of_folder
-        own = {f"{self.name}.py": self.source.encode()} if self.source else {}
-        return self.of_target("numpy") | own
+        return self.of_target("numpy")
 
     @property
     def c(self) -> dict[str, bytes]:
@@ -121,15 +121,6 @@ class Model:
         assert self.folder is not None
         return {path: e.content for path, e in self.folder.items() if e.kind == "file"}
 
-    @property
-    def _derived(self) -> Bundle:
-        assert self.bundle is not None
-        return self.bundle
-
-
-def _texts(bundle: Bundle, target: str) -> dict[str, str]:
-    return emit_target(bundle, registry.target(target))
-
 
 def from_manipulator(label: str, manipulator: Manipulator) -> Model:
     """Compile a manipulator in memory.
@@ -142,15 +133,29 @@ def from_manipulator(label: str, manipulator: Manipulator) -> Model:
 
 def from_bundle(label: str, bundle: Bundle) -> Model:
     """A compiled manipulator as a version of a model."""
-    manifest = _texts(bundle, "manifest")[f"{bundle.name}.json"]
-    return Model(label, bundle.name, json.loads(manifest), "", bundle=bundle)
+    manifest = emit_target(bundle, registry.target("manifest"))[f"{bundle.name}.json"]
+    return Model(label, bundle.name, json.loads(manifest), bundle)
 
 
-def from_folder(label: str, manifest: dict[str, Any], folder: Folder) -> Model:
-    """A generated folder as a version of a model; its manifest is checked."""
-    module = folder.get(f"{manifest['name']}.py", Entry("other")).content.decode(errors="replace")
-    targets = recorded_targets(manifest)
-    return Model(label, manifest["name"], manifest, module, folder=folder, targets=targets)
+def version_of(source: Source) -> Model:
+    """A version of a model, compiled where it is a specification, else as a folder has it.
+
+    Raises:
+        InputError: it is none, or its manifest is at fault.
+        SpecError: the specification is at fault.
+    """
+    if source.models is not None:
+        raise InputError(f"{source.label[:100]!r} is no generated folder: it holds several")
+    if source.folder is not None:
+        manifest = manifest_of(source)
+        targets = recorded_targets(manifest)
+        return Model(source.label, source.name, manifest, folder=source.folder, targets=targets)
+    if source.content is None:
+        return from_manipulator(source.label, find(source.name))
+    text = source.content, source.suffix, source.label
+    written = parse(*text)
+    model = from_manipulator(source.label, from_text(*text))
+    return replace(model, written=written if isinstance(written, Mapping) else None)
 
 
 @dataclass(frozen=True)

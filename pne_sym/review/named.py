@@ -7,6 +7,7 @@ and tensors in base axes, by nothing but the derivation.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,20 +18,16 @@ from pne_sym.derivation import Derivation, leg_sums
 from pne_sym.program.evaluate import Array, Status, evaluate, prepare
 from pne_sym.program.ir import Block, Component, Means, Program
 from pne_sym.program.slices import places_of
-from pne_sym.review.arrays import assembled, by_array
-from pne_sym.review.evaluation import State, Structure
+from pne_sym.review.difference import Contradiction
+from pne_sym.review.equations import Sample
+from pne_sym.review.evaluation import Situation, State, Structure, assembled, by_array, turned
+from pne_sym.review.model import Model
 
+_SITUATIONS = 2
+"""At random, a statement that is wrong is so at each of them; the second is for what is zero."""
 TOLERANCE = 1e-8
 """Of a component's error, over the largest entry of its quantity."""
 _SMALL = 1e-9  # what rounding leaves of a quantity that is zero
-
-
-@dataclass(frozen=True)
-class Situation:
-    """Numbers to evaluate a model at: parameters by name, and one X, V, A, q."""
-
-    parameters: Mapping[str, Any]
-    vectors: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -70,18 +67,15 @@ def first_contradiction(
 ) -> Statement | None:
     """The first statement, in order of computation, that contradicts its derivation."""
     structure = Structure(derivation)
-    for situation in situations:
-        for statement in statements(structure, program, situation):
-            if not statement.is_right:
-                return statement
-    return None
+    found = (s for at in situations for s in statements(structure, program, at) if not s.is_right)
+    return next(found, None)
 
 
 def statements(structure: Structure, program: Program, at: Situation) -> Iterator[Statement]:
     """Everything that says what it is, in order of computation, with its value at a state."""
     table = structure.derivation.parameters
     prepared = prepare(program, table.values(at.parameters))
-    state = State(structure, at.parameters, at.vectors)
+    state = State(structure, at)
     said = _Said(state)
     yield from _Values(said, "prepare", program.means, prepared).of(program.prepare)
     vectors = {name: np.asarray(v, dtype=float)[None] for name, v in at.vectors.items()}
@@ -113,14 +107,13 @@ class _Said:
 
     def _in_frame(self, component: Component, leg: int | None) -> Array:
         state = self.state
-        turned = state.rotation(component.frame, leg) if component.frame else None
         if component.axes:
-            assert turned is not None
-            return np.asarray(turned.T @ state.rotation(component.axes, leg))
+            inverse = state.rotation(component.frame, leg).T
+            return np.asarray(inverse @ state.rotation(component.axes, leg))
         value = np.asarray(self._value(component, leg), dtype=float)
-        if turned is None or value.ndim == 0:
+        if not component.frame or value.ndim == 0:
             return value
-        return np.asarray(turned.T @ value if value.ndim == 1 else turned.T @ value @ turned)
+        return np.asarray(turned(state.rotation(component.frame, leg).T, value))
 
     def _value(self, component: Component, leg: int | None) -> Any:
         if not component.over:
@@ -142,7 +135,7 @@ class _Values:
     def of(self, blocks: Iterable[Block]) -> Iterator[Statement]:
         """Assignments and sums."""
         for block in blocks:
-            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
+            legs = self.structure.legs.get(block.leg_type, (None,))
             for a in block.assignments:
                 yield from self._named(str(a.target), a.equation, legs)
             for s in block.sums:
@@ -159,16 +152,8 @@ class _Values:
                 whole = self.said.whole(component, leg)
                 value = np.atleast_1d(self.values[name])
                 found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]
-                yield Statement(
-                    self.function,
-                    of,
-                    name,
-                    component.name,
-                    leg,
-                    float(found),
-                    float(whole[component.index]),
-                    float(np.abs(whole).max()),
-                )
+                numbers = map(float, (found, whole[component.index], np.abs(whole).max()))
+                yield Statement(self.function, of, name, component.name, leg, *numbers)
 
     def stored(
         self,
@@ -181,7 +166,7 @@ class _Values:
         size = max(map(abs, expected.values()), default=0.0)
         flat = found.reshape(found.shape[0], -1)
         for block in blocks:
-            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
+            legs = self.structure.legs.get(block.leg_type, (None,))
             for store in (s for s in block.stores if s.array == array):
                 for leg, place in zip(legs, places_of(store, len(legs)), strict=True):
                     row, column = place
@@ -189,3 +174,41 @@ class _Values:
                     value = expected.get(place, 0.0)
                     entry = float(flat[place])
                     yield Statement(self.function, store.equation, of, of, leg, entry, value, size)
+
+
+def contradictions(
+    models: tuple[Model, Model], samples: Sequence[Sample]
+) -> Iterator[Contradiction]:
+    """Of each version whose derivation is known, the first statement that contradicts it."""
+    for k, model in enumerate(models):
+        if model.bundle is None:
+            continue
+        at = [sample[k] for sample in samples[:_SITUATIONS]]
+        s = first_contradiction(model.bundle.derivation, model.bundle.program, at)
+        if s is not None:
+            line = line_of(model, s)
+            yield Contradiction(
+                model.label, s.equation, s.name, s.function, s.means, line, s.found, s.expected
+            )
+
+
+def line_of(model: Model, statement: Statement) -> str:
+    """The line of C, else of Python, that computes a value; empty for stored entries."""
+    name = re.escape(statement.name)
+    forms = (
+        (
+            "c",
+            model.c,
+            rf"/\* ---- {statement.function} ",
+            rf"\s*((const real |v->){name} =|KEEP(_OF_LEG)?\({name},)",
+        ),
+        ("py", model.python, rf"def _run_{statement.function}\(", rf"\s*{name} ="),
+    )
+    for suffix, files, head, form in forms:
+        path = f"{model.name}.{suffix}"
+        lines = files.get(path, b"").decode(errors="replace").split("\n")
+        start = next((k for k, line in enumerate(lines) if re.match(head, line)), len(lines))
+        for k in (*range(start, len(lines)), *range(start)):  # what functions share stands before
+            if re.match(form, lines[k]):
+                return f"{path}:{k + 1}"
+    return ""

@@ -13,20 +13,10 @@ from typing import Any
 import sympy as sp
 from sympy.core.symbol import Str
 
-from pne_sym.derivation import ParameterField
 from pne_sym.review.alignment import Alignment
-from pne_sym.review.evaluation import Structure
-from pne_sym.vector import (
-    LegSum,
-    TensorAdd,
-    TensorLegSum,
-    TensorSymbol,
-    VectorAdd,
-    VectorLegSum,
-    VectorSymbol,
-)
+from pne_sym.review.evaluation import SUMS, Structure
+from pne_sym.vector import TensorAdd, TensorSymbol, VectorAdd, VectorSymbol
 
-_SUMS = (LegSum, VectorLegSum, TensorLegSum)
 _TOKEN = re.compile(r"[A-Za-z_]\w*")
 
 
@@ -69,7 +59,7 @@ class Names:
 
     def expression(self, expr: Any) -> Any:
         """An expression after with the names before; sums over types that were one joined."""
-        if isinstance(expr, _SUMS):
+        if isinstance(expr, SUMS):
             value, leg_type = expr.args
             return expr.func(
                 self.expression(value), Str(self.partner.get(str(leg_type), f"new {leg_type}"))
@@ -81,7 +71,7 @@ class Names:
             return expr
         made = [self.expression(arg) for arg in args]
         if isinstance(expr, sp.Add | VectorAdd | TensorAdd):
-            made = [a for k, a in enumerate(made) if not isinstance(a, _SUMS) or a not in made[:k]]
+            made = [a for k, a in enumerate(made) if not isinstance(a, SUMS) or a not in made[:k]]
         if len(made) == 1 and len(args) > 1:
             return made[0]
         same = len(made) == len(args) and all(a is b for a, b in zip(made, args, strict=True))
@@ -112,24 +102,27 @@ class Names:
         old_type = self.alignment.types.get(new_type) if new_type else ""
         if old_type is None:
             return None
-        joints = self.joints_of(new_type) if new_type else {}
-        stem = _stem(name, new_type)
-        count = self._joint_count(new_type)
-        for mapped in _renumbered(stem, joints, count):
+        for mapped in self._mapped(_stem(name, new_type), new_type):
             partner = self._by_stem.get((old_type, mapped))
-            if partner is not None and self._same_title(partner, name, joints, count):
+            if partner is not None and self._same_title(partner, name, new_type):
                 return partner
         return None
+
+    def _mapped(self, text: str, leg_type: str, *, everywhere: bool = False) -> Iterator[str]:
+        """A text of a leg type after with the numbers of joints as they are before."""
+        joints, count = self.joints_of(leg_type), self._joint_count(leg_type)
+        return _renumbered(text, joints, count, everywhere=everywhere)
 
     def _joint_count(self, leg_type: str) -> int:
         return max((t.joints for t in self.b.derivation.leg_types if t.name == leg_type), default=0)
 
-    def _same_title(self, before: str, after: str, joints: Mapping[int, int], count: int) -> bool:
+    def _same_title(self, before: str, after: str, leg_type: str) -> bool:
         """Whether two quantities say the same of corresponding joints."""
+        joints, count = self.joints_of(leg_type), self._joint_count(leg_type)
         if all(joints.get(k, k) == k for k in range(1, count + 1)) and len(joints) >= count:
             return True
         titles = [self._title(s, n) for s, n in ((self.a, before), (self.b, after))]
-        return next(_renumbered(titles[1], joints, count), "") == titles[0]
+        return next(self._mapped(titles[1], leg_type), "") == titles[0]
 
     @staticmethod
     def _title(s: Structure, name: str) -> str:
@@ -146,20 +139,17 @@ class Names:
             for path in f.paths
         }
         for name, (f, index) in self.b.derivation.parameters.entries.items():
-            partners = {places.get((path, index)) for path in self._paths(f)}
+            partners = {
+                places.get((path, index)) for path in map(self.alignment.canonical, f.paths)
+            }
             found = sorted(p for p in partners if p is not None)
             if found:
                 yield name, found[0]
         for name, (leg_type, _) in self.b.derivation.parameters.branches.items():
-            if leg_type in self.alignment.types:
-                joints, count = self.joints_of(leg_type), self._joint_count(leg_type)
-                for mapped in _renumbered(_stem(name, leg_type), joints, count):
-                    for old, (of, _) in self.a.derivation.parameters.branches.items():
-                        if of == self.alignment.types[leg_type] and _stem(old, of) == mapped:
-                            yield name, old
-
-    def _paths(self, f: ParameterField) -> Iterator[str]:
-        return (self.alignment.canonical(path) for path in f.paths)
+            for mapped in self._mapped(_stem(name, leg_type), leg_type):
+                for old, (of, _) in self.a.derivation.parameters.branches.items():
+                    if of == self.alignment.types.get(leg_type) and _stem(old, of) == mapped:
+                        yield name, old
 
     def _frames(self) -> Iterator[tuple[str, str]]:
         """Frames by leg type and joint: rpr.axes1."""
@@ -167,8 +157,7 @@ class Names:
             leg_type, dot, rest = name.partition(".")
             if not dot or leg_type not in self.alignment.types:
                 continue
-            joints, count = self.joints_of(leg_type), self._joint_count(leg_type)
-            for mapped in _renumbered(rest, joints, count, everywhere=True):
+            for mapped in self._mapped(rest, leg_type, everywhere=True):
                 old = f"{self.alignment.types[leg_type]}.{mapped}"
                 if old in self.a.frames:
                     yield name, old

@@ -12,7 +12,7 @@ import sympy as sp
 from pne_sym.backends.bundle import Bundle
 from pne_sym.program.ir import Block, Program
 from pne_sym.program.public import Search
-from pne_sym.review.code import statements_of
+from pne_sym.review.code import places, statements_of
 from pne_sym.review.difference import StatementDifference
 
 
@@ -51,13 +51,9 @@ def first_statement(before: Bundle, after: Bundle) -> StatementDifference | None
 
 def _differences(before: Bundle, after: Bundle) -> Iterator[tuple[tuple[str, str, str], str, str]]:
     """(equation, target, function) and both statements, pair by pair."""
-    old, new = before.program, after.program
-    places = [("prepare", [old.prepare, new.prepare])]
-    for name in dict.fromkeys((*old.functions, *new.functions)):
-        blocks = [p.functions[name].blocks if name in p.functions else () for p in (old, new)]
-        places.append((name, blocks))
-    for name, sides in places:
-        rows = [[s for block in blocks for s in statements_of(block)] for blocks in sides]
+    old, new = (dict(places(bundle.program)) for bundle in (before, after))
+    for name in old | new:
+        rows = [[s for b in side.get(name, ()) for s in statements_of(b)] for side in (old, new)]
         known = [{(e, t): text for e, t, text in side} for side in rows]
         for a, b in zip_longest(*rows):
             for row in (r for r in (a, b) if r is not None):

@@ -33,11 +33,10 @@ def reproduced(model: Model) -> Model:
         return replace(model, deviations=(Deviation(model.label, "", reason),))
     try:
         bundle, ours = _derived(json.dumps(model.manifest["specification"]), chosen(model.targets))
-    except SpecError as error:
-        reason = printable(f"the specification in its manifest is refused: {error}", 400)
-        return replace(model, deviations=(Deviation(model.label, "", reason),))
-    except TargetError as error:
-        reason = printable(f"its targets: {error}", 400)
+    except (SpecError, TargetError) as error:
+        refused = "the specification in its manifest is refused"
+        what = refused if isinstance(error, SpecError) else "its targets"
+        reason = printable(f"{what}: {error}", 400)
         return replace(model, deviations=(Deviation(model.label, "", reason),))
     deviations = tuple(_deviations(model, ours))
     return replace(model, deviations=deviations, bundle=None if deviations else bundle)
@@ -67,12 +66,10 @@ def _deviations(model: Model, ours: Folder) -> list[Deviation]:
         if own == other:
             continue
         if own is None or other is None:
-            where = "missing" if other is None else "would not be printed"
-            found.append(Deviation(model.label, path, where))
+            told = ["missing" if other is None else "would not be printed"]
         elif other.kind != "file":
-            found.append(Deviation(model.label, path, f"a {other.kind}"))
+            told = [f"a {other.kind}"]
         else:
-            found.append(
-                Deviation(model.label, path, *first_difference(own.content, other.content))
-            )
+            told = [*first_difference(own.content, other.content)]
+        found.append(Deviation(model.label, path, *told))
     return found

@@ -41,7 +41,7 @@ def answered(model: Any, request: dict[str, Any]) -> dict[str, Any]:
     """What a module answers to a request."""
     with np.errstate(all="ignore"):
         return {
-            "defaults": {n: _packed(getattr(model.Parameters(), n)) for n in request["defaults"]},
+            "defaults": {n: packed(getattr(model.Parameters(), n)) for n in request["defaults"]},
             "constants": dict(_constants(model)),
             "sets": [_run(model, each) for each in request["sets"]],
         }
@@ -56,7 +56,7 @@ def _run(model: Any, each: dict[str, Any]) -> dict[str, Any]:
         if hasattr(model, "Hk") and each["consistent"] != "q":
             _onto_the_manifold(model, values, p)
         values["q"] = model.inverse_kinematics(values["X"], p=p)
-        made = {n: _packed(v) for n, v in values.items()}
+        made = {n: packed(v) for n, v in values.items()}
         if only is None:
             return {"values": made, "calls": []}
     shared = set(each["shared"])
@@ -69,7 +69,7 @@ def _constants(model: Any) -> Iterator[tuple[str, Any]]:
         member = getattr(model, name)
         if not callable(member):
             try:
-                yield name, _packed(np.asarray(member, dtype=float))
+                yield name, packed(np.asarray(member, dtype=float))
             except (TypeError, ValueError):
                 yield name, {"text": repr(member)[:_LONGEST]}
 
@@ -121,7 +121,7 @@ def _call(
             for k in range(count)
         ]
         single = [np.stack([np.asarray(v) for v in each]) for each in zip(*rows, strict=True)]
-        return {"batch": [_packed(v) for v in batch], "single": [_packed(v) for v in single]}
+        return {"batch": [packed(v) for v in batch], "single": [packed(v) for v in single]}
     except Exception as error:  # noqa: BLE001 - whatever it is, the parent is told
         return {"error": f"{type(error).__name__}: {error}"[:_LONGEST]}
 
@@ -130,7 +130,8 @@ def _tuple(value: Any) -> tuple[Any, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def _packed(value: Any) -> dict[str, Any]:
+def packed(value: Any) -> dict[str, Any]:
+    """An array as JSON."""
     array = np.ascontiguousarray(value, dtype="<f8")
     shape = np.shape(value)
     return {"shape": list(shape), "data": base64.b64encode(array.tobytes()).decode()}

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pne_sym.model.kinematics import rotation_about
-
-Array = NDArray[np.float64]
+from pne_sym.model.kinematics import Array, rotation_about
 
 
 def random_parameters(defaults: Mapping[str, Array], rng: np.random.Generator) -> dict[str, Array]:
@@ -129,20 +126,6 @@ def _orientations(pose: list[str], count: int, rng: np.random.Generator) -> dict
 def actuated(manifest: Mapping[str, Any], q: Array) -> Array:
     """The displacements of the actuated joints among those of all."""
     return q[:, [manifest["joints"].index(joint) for joint in manifest["actuators"]]]
-
-
-def carried(value: Array, places: Sequence[int | None], fill: Array) -> Array:
-    """Entries as another version orders them.
-
-    Args:
-        value: (..., n).
-        places: per entry of the other version its position in `value`, or None.
-        fill: (m,) what the entries have that are not in `value`.
-    """
-    found = np.empty((*value.shape[:-1], len(places)))
-    for k, place in enumerate(places):
-        found[..., k] = fill[k] if place is None else value[..., place]
-    return found
 
 
 def length_of(defaults: Mapping[str, Array]) -> float:

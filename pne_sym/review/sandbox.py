@@ -133,10 +133,10 @@ class Workplace:
         if self.isolation is Isolation.NONE:
             return []
         if self.isolation is Isolation.UNSHARE:
-            return [*_tool("unshare"), *_UNSHARE]
+            return [_tool("unshare"), *_UNSHARE]
         bind = "--bind" if writes else "--ro-bind"
         return [
-            *_tool("bwrap"),
+            _tool("bwrap"),
             *_bubblewrap(),
             *("--ro-bind", str(self.root / "given"), "/given"),
             *(bind, str(self.root / "made"), "/made"),
@@ -179,8 +179,8 @@ _UNSHARE = (
 )  # fmt: skip
 
 
-def _tool(name: str) -> list[str]:
-    """The program of a name, as a command's first word.
+def _tool(name: str) -> str:
+    """The path of a program.
 
     Raises:
         SandboxError: it is not installed.
@@ -188,7 +188,7 @@ def _tool(name: str) -> list[str]:
     found = shutil.which(name, path="/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin")
     if found is None:
         raise SandboxError(f"{name} is not installed")
-    return [found]
+    return found
 
 
 def _bubblewrap() -> list[str]:

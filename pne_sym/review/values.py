@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.model.kinematics import Array
 from pne_sym.program.interpret import REST
 from pne_sym.review.alignment import Alignment
-from pne_sym.review.c_driver import Array, CAnswer, c_calls
+from pne_sym.review.c_driver import Asked, c_calls
 from pne_sym.review.correspondence import Correspondence, same_platform
 from pne_sym.review.equations import Sample
-from pne_sym.review.execution import (
-    Answer,
-    Asked,
-    ExecutionError,
-    execute,
-    execute_c,
-    packed,
-)
+from pne_sym.review.evaluation import Situation
+from pne_sym.review.execution import Answer, ExecutionError, execute, execute_c
 from pne_sym.review.model import Model, by_name, by_path, paths_of
+from pne_sym.review.runner import packed
 from pne_sym.review.samples import (
     SHARED,
     actuated,
-    carried,
     length_of,
     random_parameters,
     random_values,
@@ -91,10 +86,9 @@ class Runs:
 
     def _run(self, rng: np.random.Generator) -> None:
         self._draw(rng)
-        self.answers = _both(
-            _asked(m, [_request(s) for s in sets])
-            for m, sets in zip(self.models, self.sets, strict=True)
-        )
+        requests = [[request_for(s) for s in sets] for sets in self.sets]
+        before, after = map(asked_of, self.models, requests)
+        self.answers = (before, after)
         self.kept = [self._possible(k) for k in range(len(self.sets[0]))]
 
     # ---- parameters ---------------------------------------------------------------------
@@ -125,31 +119,19 @@ class Runs:
 
     def _freed(self, path: str, drawn: Array) -> Array:
         """Entries that are zero by structure before have the default after, where they are free."""
-        if self._axis_moved(path):
-            return self.defaults[1][path]
-        zeros = self._zeros.get(path, ())
-        if not zeros:
-            return drawn
-        value = np.array(drawn, dtype=float)
-        value.reshape(-1)[list(zeros)] = self.defaults[1][path].reshape(-1)[list(zeros)]
-        return value
-
-    def _axis_moved(self, path: str) -> bool:
-        """Whether a live axis stands otherwise: what it may be, its relations to others say."""
-        key = path.rpartition(".")[2]
-        old, new = (d.get(path) for d in self.defaults)
-        if "axis" not in key or old is None or new is None:
-            return False
-        return not np.array_equal(old, new)
-
-    @property
-    def _zeros(self) -> dict[str, tuple[int, ...]]:
-        """Entries that are zero by structure before, by path."""
-        return {
-            path: tuple(p.get("zero_by_structure", ()))
+        old, default = self.defaults[0].get(path), self.defaults[1][path]
+        is_axis = old is not None and "axis" in path.rpartition(".")[2]
+        if is_axis and not np.array_equal(old, default):  # type: ignore[arg-type]
+            return default  # what a live axis may be, its relations to others say
+        zeros = [
+            k
             for p in self.models[0].parameters
-            for path in paths_of(p)
-        }
+            if path in paths_of(p)
+            for k in p.get("zero_by_structure", ())
+        ]
+        value = np.array(drawn, dtype=float)
+        value.reshape(-1)[zeros] = default.reshape(-1)[zeros]
+        return value
 
     # ---- states -------------------------------------------------------------------------
 
@@ -162,10 +144,10 @@ class Runs:
             random_values(model.manifest, STATES, size, rng) for _ in range(len(parameters[0]))
         ]
         asked = [
-            _request(Set(p, v), consistent=True)
+            request_for(Set(p, v), consistent=True)
             for p, v in zip(parameters[leader], drafts, strict=True)
         ]
-        states = _asked(model, asked).states
+        states = asked_of(model, asked).states
         led = [
             Set(p, self._complete(model, draft, state, size, rng))
             for p, draft, state in zip(parameters[leader], drafts, states, strict=True)
@@ -178,13 +160,13 @@ class Runs:
         one, other = self.models[leader], self.models[1 - leader]
         own = Correspondence(one.manifest, other.manifest, self.alignment, backwards=leader == 1)
         found = [
-            Set(p, {n: _fitted(own, n, v, other.manifest) for n, v in s.values.items()})
+            Set(p, {n: own.carried(n, v, 1.0) for n, v in s.values.items()})
             for p, s in zip(parameters, led, strict=True)
         ]
         if own.joints("joints") == list(range(one.manifest["sizes"]["NJ"])):
             return found
-        asked = [_request(s, consistent="q") for s in found]
-        for s, made in zip(found, _asked(other, asked).states, strict=True):
+        asked = [request_for(s, consistent="q") for s in found]
+        for s, made in zip(found, asked_of(other, asked).states, strict=True):
             s.values["q"] = made["q"]
             s.values["q_actuated"] = actuated(other.manifest, made["q"])
         return found
@@ -221,36 +203,33 @@ class Runs:
 
     def samples(self) -> list[Sample]:
         """States for comparing equations: possible in both versions."""
-        found = []
         both_move = all(takes_base(m.manifest) for m in self.models)
+
+        def at(side: Set, s: int) -> Situation:
+            vectors = {n: side.values[n][s] for n in ("X", "V", "A", "q", "base")}
+            rest = {} if both_move else {"base": REST}
+            return Situation(side.parameters or {}, vectors | rest)
+
+        found = []
         for k in range(PARAMETER_SETS if self.comparable else 0):
             old, new = self.sets[0][k], self.sets[1][k]
             allowed = [_allowed(answer, k) for answer in self.answers]
             both = [s for s in self.kept[k] if all(version[s] for version in allowed)]
             for s in both[:_PER_SET]:
-                vectors = [
-                    {n: side.values[n][s] for n in ("X", "V", "A", "q", "base")}
-                    | ({} if both_move else {"base": REST})
-                    for side in (old, new)
-                ]
-                found.append(
-                    Sample(old.parameters or {}, new.parameters or {}, (vectors[0], vectors[1]))
-                )
+                found.append((at(old, s), at(new, s)))
         return found
 
-    def c_answers(self) -> tuple[tuple[CAnswer, CAnswer] | None, list[str]]:
+    def c_answers(self) -> tuple[tuple[Answer, Answer] | None, list[str]]:
         """What the C of both versions answers, and why where one does not."""
-        functions = [m.functions for m in self.models]
         found, faults = [], []
-        for k, model in enumerate(self.models):
-            calls = c_calls(functions[k] or functions[1 - k])
-            manifest = model.manifest
-            sets = [(s.parameters, _for_c(s.values)) for s in self.sets[k]]
+        for model, other, own in zip(self.models, self.models[::-1], self.sets, strict=True):
+            calls = c_calls(model.functions or other.functions)
+            asked = Asked(calls, [(s.parameters, _for_c(s.values)) for s in own], STATES)
             try:
                 if not calls:
                     raise ExecutionError("manifests of format 1 do not list the C functions")
-                asked = Asked(calls, sets, STATES)
-                found.append(execute_c(model.label, model.c, manifest, asked, _isolation(model)))
+                isolation = _isolation(model)
+                found.append(execute_c(model.label, model.c, model.manifest, asked, isolation))
             except KeyError as error:
                 faults.append(f"{model.label}: no value is known for the argument {error} of C")
             except ExecutionError as error:
@@ -271,20 +250,20 @@ def _allowed(answer: Answer, k: int) -> Array:
     return np.zeros(STATES, dtype=bool)
 
 
-def _both(answers: Iterable[Answer]) -> tuple[Answer, Answer]:
-    before, after = answers
-    return before, after
-
-
 def _constants_of(model: Model) -> Answer:
     """Defaults and constants: of our own text they are known, else it is asked."""
     if model.bundle is None:
-        return _asked(model, [])
+        return asked_of(model, [])
     fields = model.bundle.derivation.parameters.fields
     return Answer({f.name: np.asarray(f.default, dtype=float) for f in fields})
 
 
-def _asked(model: Model, sets: Sequence[dict[str, Any]]) -> Answer:
+def asked_of(model: Model, sets: Sequence[dict[str, Any]]) -> Answer:
+    """What the NumPy module of a version answers.
+
+    Raises:
+        ExecutionError: it cannot be run.
+    """
     request = {"defaults": [p["name"] for p in model.parameters], "sets": list(sets)}
     return execute(model.label, model.name, model.python, request, _isolation(model))
 
@@ -294,7 +273,8 @@ def _isolation(model: Model) -> Isolation | None:
     return None if model.bundle is None else Isolation.NONE
 
 
-def _request(s: Set, *, consistent: bool | str = False) -> dict[str, Any]:
+def request_for(s: Set, *, consistent: bool | str = False) -> dict[str, Any]:
+    """A set as `runner.py` reads it."""
     return {
         "parameters": s.parameters,
         "values": {n: packed(v) for n, v in s.values.items()},
@@ -312,16 +292,6 @@ def _by_path(model: Model, answer: Answer) -> dict[str, Array]:
 
 def _same(old: dict[str, Array], new: dict[str, Array]) -> bool:
     return old.keys() == new.keys() and all(np.array_equal(old[p], new[p]) for p in old)
-
-
-def _fitted(own: Correspondence, name: str, value: Array, manifest: Mapping[str, Any]) -> Array:
-    """Values of an argument as a version orders its entries."""
-    places = own.of(name)
-    if places is None:
-        return value
-    home = np.array(manifest["home"]["X" if name in ("X", "X0") else "q"], dtype=float)
-    fill = home if name in ("X", "X0", "q", "q0") else np.ones(len(places))
-    return carried(value, places, fill)
 
 
 def _for_c(values: dict[str, Array]) -> dict[str, Array]:

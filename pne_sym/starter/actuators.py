@@ -7,10 +7,9 @@ import math
 from collections.abc import Iterator
 
 from pne_sym.mechanics.mobility import mobility
-from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.starter.choose import Shape
-from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
+from pne_sym.starter.notation import SOURCE, LegGroup, fault, is_guide, is_marked
 
 Flags = tuple[bool, ...]
 
@@ -28,9 +27,7 @@ def check_actuators(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> s
     """
     found = mobility(manipulator)
     if found.overconstrained or not found.dofs:
-        raise SpecError(
-            SOURCE,
-            "",
+        raise fault(
             f"overconstrained: the legs put {found.constraints} constraints on the platform, of "
             f"which {found.overconstrained} follow from the others, and leave "
             f"{_count(found.dofs, 'degree')} of freedom",
@@ -39,20 +36,16 @@ def check_actuators(manipulator: Manipulator, groups: tuple[LegGroup, ...]) -> s
     dofs = found.dofs - found.passive
     told = f"{_count(found.actuators, 'actuator')} for {_count(dofs, 'degree')} of freedom"
     if found.actuators < dofs:
-        raise SpecError(SOURCE, "", told, "more joints marked by _, or none to have them chosen")
+        raise fault(told, "more joints marked by _, or none to have them chosen")
     if found.unheld > found.passive:
-        raise SpecError(
-            SOURCE,
-            "",
+        raise fault(
             f"{told}, which cannot hold the mechanism at home wherever the legs stand",
             "other actuated joints, or other legs",
         )
     if found.actuators == dofs:
         return ""
     if found.constraints and not is_marked(groups) and not any(is_guide(g, groups) for g in groups):
-        raise SpecError(
-            SOURCE,
-            "",
+        raise fault(
             f"{told}: in general position the legs put {found.constraints} constraints on the "
             "platform, more than such machines have by their parallel and common axes",
             "a specification written by hand, see docs/robots.md",

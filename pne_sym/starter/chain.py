@@ -7,12 +7,14 @@ cylinder and rod, and carriages; angles at home keep the leg bent, so that nothi
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from pne_sym.model.joint_kinds import JointKind
 from pne_sym.starter.notation import LegGroup, Letter
 
 Axes = tuple[str, ...]
-Plain = dict[str, object]
+Plain = dict[str, Any]
+"""A table as the file will have it."""
 
 BEND = (0.9, -1.2, 0.8, -0.9, 0.7, -0.6, 0.5)
 LENGTHS = {0: 0.6, 1: 0.7, 2: 0.45, 3: 0.35}
@@ -59,11 +61,6 @@ class Chain:
     end: float
 
 
-def axis_choices(letter: Letter, *, plane: bool) -> tuple[Axes, ...]:
-    """Axes that a joint may have in the leg frame, the usual first."""
-    return letter.kind.plane_choices if plane else letter.kind.axis_choices
-
-
 def build_chain(
     group: LegGroup, axes: tuple[Axes, ...], side: float, *, concentric: bool, straight: bool
 ) -> Chain:
@@ -106,16 +103,14 @@ def scaled(chain: Chain, factor: float) -> Chain:
     return Chain(tuple(joints), round(chain.end * factor, 6))
 
 
-def _scaled_link(link: object, factor: float) -> Plain:
-    assert isinstance(link, dict)
+def _scaled_link(link: Plain, factor: float) -> Plain:
     powers = {"mass": 1, "centre_of_mass": 1, "inertia": 3}
     return {name: _times(value, factor ** powers[name]) for name, value in link.items()}
 
 
-def _times(value: object, factor: float) -> object:
+def _times(value: Any, factor: float) -> Any:
     if isinstance(value, list):
         return [_times(item, factor) for item in value]
-    assert isinstance(value, float)
     return float(f"{value * factor:.4g}")
 
 
@@ -150,14 +145,9 @@ def _joint(letter: Letter, axes: Axes, gap: float, place: _Place) -> tuple[Writt
 
 def _home(kind: JointKind, axis: str, place: _Place) -> tuple[float, bool]:
     """Displacement of a degree of freedom, and whether mirrored legs have the opposite."""
-    if not kind.slides:
-        return _angle(axis, place)
-    way = place.length if place.telescope else 0.1
-    return round(way / kind.advance(PITCH), 6), False
-
-
-def _angle(axis: str, place: _Place) -> tuple[float, bool]:
-    """Displacement of a revolute joint, and whether mirrored legs have the opposite."""
+    if kind.slides:
+        way = place.length if place.telescope else 0.1
+        return round(way / kind.advance(PITCH), 6), False
     if axis == "z":
         return place.bend, False
     return (place.side, True) if axis == "y" else (0.2, True)

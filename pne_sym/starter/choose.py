@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from pne_sym.model.closure import leg_residual
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecError
 from pne_sym.model.joint_kinds import WrittenJoint
 from pne_sym.model.joints import read_joint
 from pne_sym.model.kinematics import Pose, chain_pose
@@ -25,10 +24,9 @@ from pne_sym.model.manipulator import (
     PlatformJoint,
     PlatformJointKind,
     Space,
-    Vector3,
 )
-from pne_sym.starter.chain import Axes, Chain, axis_choices, build_chain
-from pne_sym.starter.notation import SOURCE, LegGroup
+from pne_sym.starter.chain import Axes, Chain, Plain, build_chain
+from pne_sym.starter.notation import SOURCE, LegGroup, fault
 
 Array = npt.NDArray[np.float64]
 
@@ -36,7 +34,7 @@ GOOD = 0.2
 """Independence of a leg's degrees of freedom (0 dependent, 1 orthogonal) that ends the search."""
 LEAST = 0.02
 _MOST_TRIED = 3000
-_DIRECTIONS: dict[str, Vector3] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_DIRECTIONS = dict(zip("xyz", IDENTITY3, strict=True))
 
 
 @dataclass(frozen=True)
@@ -99,9 +97,7 @@ def choose_shape(group: LegGroup, space: Space, *, side: float, straight: bool =
             break
     assert best is not None
     if best[0] < LEAST:
-        raise SpecError(
-            SOURCE,
-            "",
+        raise fault(
             f"the degrees of freedom of {a_leg(group.plain)} are dependent however its axes "
             "are laid",
             "a chain without superfluous joints, or the surplus marked extra by *",
@@ -134,27 +130,24 @@ def dofs(chain: Chain, *, plane: bool) -> tuple[Joint, ...]:
     )
 
 
-def in_space(fields: dict[str, object], plane: bool) -> dict[str, object]:
+def in_space(fields: Plain, plane: bool) -> Plain:
     """The fields as they are, or with what the plane has."""
     if not plane:
         return fields
-    result = dict(fields)
-    if WrittenJoint(str(result["kind"])).implied:
+    link = {**fields["link"], "inertia": fields["link"]["inertia"][2]}
+    result = {**fields, "link": link}
+    if WrittenJoint(fields["kind"]).implied:
         result.pop("axis", None)
-    if isinstance(offset := result.get("offset"), list):
-        result["offset"] = offset[:2]
-    if isinstance(link := result.get("link"), dict):
-        flat = dict(link)
-        if isinstance(centre := flat.get("centre_of_mass"), list):
-            flat["centre_of_mass"] = centre[:2]
-        flat["inertia"] = flat["inertia"][2]
-        result["link"] = flat
+    for table, name in ((result, "offset"), (link, "centre_of_mass")):
+        if name in table:
+            table[name] = table[name][:2]
     return result
 
 
 def _candidates(group: LegGroup, *, plane: bool) -> Iterator[tuple[tuple[Axes, ...], str]]:
     """Axes of all joints, and of the platform joint; the first joint varies fastest."""
-    choices = [axis_choices(letter, plane=plane) for letter in group.letters]
+    kinds = [letter.kind for letter in group.letters]
+    choices = [kind.plane_choices if plane else kind.axis_choices for kind in kinds]
     ends = ("y", "z", "x") if not plane and "axis_link" in group.platform.fields else ("",)
     for end in ends:
         for reverse in itertools.product(*reversed(choices)):
@@ -169,8 +162,12 @@ def _judged(group: LegGroup, chain: Chain, axis_link: str, space: Space) -> tupl
     plane = is_plane(space)
     tip, frame = _end(chain, plane=plane, mirrored=False)
     axis_leg = _platform_axis(group.platform, frame, axis_link)
-    columns, by_twist = _columns(group, chain, axis_link, axis_leg, (tip, frame), plane=plane)
-    holds = space is Space.TRANSLATIONAL and _rank(np.hstack([columns, by_twist])) > _rank(columns)
+    welded, concentric = "rotation" in group.platform.fields, is_concentric(group, space)
+    shape = Shape(chain, (), 0, axis_link, axis_leg, tip, frame, concentric, welded)
+    columns, by_twist = _columns(group, shape, plane=plane)
+    sides = (columns, np.hstack([columns, by_twist]))
+    ranks = [np.linalg.matrix_rank(side, tol=1e-8) for side in sides]
+    holds = space is Space.TRANSLATIONAL and bool(ranks[1] > ranks[0])
     sizes = np.linalg.norm(columns, axis=0)
     still = sizes < 1e-9
     columns = columns / np.where(still, 1.0, sizes)
@@ -182,10 +179,7 @@ def _judged(group: LegGroup, chain: Chain, axis_link: str, space: Space) -> tupl
         if worst > score + 1e-9:
             score, extra = worst, chosen
     idle = sum(bool(a and b) for a, b in zip(extra, still, strict=True))
-    welded = "rotation" in group.platform.fields
-    concentric = is_concentric(group, space)
-    shape = Shape(chain, extra, idle, axis_link, axis_leg, tip, frame, concentric, welded)
-    return (0.1 * score if holds else score), shape
+    return (0.1 * score if holds else score), replace(shape, extra=extra, idle=idle)
 
 
 def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[bool, ...]]:
@@ -196,9 +190,7 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
     surplus = max(0, count - conditions)
     if any(marked):
         if sum(marked) < surplus:
-            raise SpecError(
-                SOURCE,
-                "",
+            raise fault(
                 f"{count - sum(marked)} degrees of freedom of {a_leg(group.plain)} that are not "
                 "marked extra",
                 f"at most {conditions}: {surplus} marked by *, or none to have them chosen",
@@ -210,32 +202,18 @@ def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[
         yield tuple(k in chosen for k in range(count))
 
 
-def _columns(
-    group: LegGroup,
-    chain: Chain,
-    axis_link: str,
-    axis_leg: Array,
-    end: tuple[Array, Array],
-    *,
-    plane: bool,
-) -> tuple[Array, Array]:
+def _columns(group: LegGroup, shape: Shape, *, plane: bool) -> tuple[Array, Array]:
     """Rates of the residual by joints and by translations, platform parallel to the leg."""
-    tip, last = end
     kind = PlatformJointKind.SPHERICAL if plane else group.platform
-    platform = PlatformJoint(kind, (chain.end, 0.0, 0.0))
-    if axis_link:
-        x, y, z = axis_leg.tolist()
-        platform = replace(platform, axis_link=_DIRECTIONS[axis_link], axis_platform=(x, y, z))
+    platform = PlatformJoint(kind, (shape.chain.end, 0.0, 0.0))
+    if shape.axis_link:
+        axes = {"axis_link": _DIRECTIONS[shape.axis_link], "axis_platform": shape.axis_leg.tolist()}
+        platform = replace(platform, **axes)
     if "rotation" in kind.fields:
-        platform = replace(platform, rotation=last.T.tolist())
-    leg = Leg(ZERO3, IDENTITY3, dofs(chain, plane=plane), platform, ZERO3)
-    q = np.array(displacements(chain, mirrored=False))
-    _, by_q, by_twist = leg_residual(leg, q, Pose(tip, np.eye(3)))
+        platform = replace(platform, rotation=shape.last.T.tolist())
+    leg = Leg(ZERO3, IDENTITY3, dofs(shape.chain, plane=plane), platform, ZERO3)
+    _, by_q, by_twist = leg_residual(leg, np.array(shape.home), Pose(shape.tip, np.eye(3)))
     return (by_q[:2], by_twist[:2, :2]) if plane else (by_q, by_twist[:, :3])
-
-
-def _rank(matrix: Array) -> int:
-    return int(np.linalg.matrix_rank(matrix, tol=1e-8))
 
 
 def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:

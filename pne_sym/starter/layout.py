@@ -17,12 +17,11 @@ from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.platform_kinds import PlatformJointKind
 from pne_sym.model.reader import from_mapping
 from pne_sym.starter.actuators import Flags, choose_actuators, other_actuators
+from pne_sym.starter.chain import Plain
 from pne_sym.starter.choose import Shape, choose_shape, in_space
-from pne_sym.starter.notation import SOURCE, LegGroup, is_guide, is_marked
+from pne_sym.starter.notation import SOURCE, LegGroup, fault, is_guide, is_marked
 from pne_sym.starter.place import CORNER, HEIGHT, Placed, leg_names, place_legs, stretch
 from pne_sym.starter.points import Points
-
-Plain = dict[str, object]
 
 HOME_X: dict[Space, list[float]] = {
     Space.POINT: [0.0, 0.0],
@@ -123,7 +122,8 @@ class _Draft:
             else:
                 actuators = choose_actuators(self.groups, shapes, self._free(shapes))
             for (tilt, mirror), actuated in itertools.product(_options(self.space), actuators):
-                yield self._plan(shapes, actuated, self._legs(shapes, tilt, mirror=mirror))
+                spec, found = self._made(shapes, actuated, tilt, mirror=mirror)
+                yield actuation_quality(found), Plan(self.groups, shapes, actuated, spec)
 
     def _shape(self, group: LegGroup, side: float) -> Shape:
         """A leg; a guide is straight if its degrees of freedom are independent so."""
@@ -132,64 +132,74 @@ class _Draft:
                 return choose_shape(group, self.space, side=side, straight=True)
         return choose_shape(group, self.space, side=side)
 
-    def _legs(self, shapes: tuple[Shape, ...], tilt: float, *, mirror: bool) -> list[Placed]:
-        return place_legs(
-            self.groups, shapes, self.space, tilt=tilt, mirror=mirror, points=self.points
-        )
-
-    def _plan(
-        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], legs: list[Placed]
-    ) -> tuple[float, Plan]:
-        spec, manipulator = self._made(shapes, actuators, legs)
-        return actuation_quality(manipulator), Plan(self.groups, shapes, actuators, spec)
-
     def _made(
-        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], legs: list[Placed]
+        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], tilt: float, *, mirror: bool
     ) -> tuple[Plain, Manipulator]:
         """The specification, with a home that closes, and what it describes."""
-        spec = _spec(self.name, self.title, self.groups, shapes, actuators, legs, self.space)
+        legs = place_legs(
+            self.groups, shapes, self.space, tilt=tilt, mirror=mirror, points=self.points
+        )
+        spec = self._spec(shapes, actuators, legs)
         if not self.points:
             return spec, _read(spec)
-        home = _table(spec["home"])
-        _set_height(spec, self.space, self.points.height)
+        if self.space is Space.SPHERICAL:
+            spec["fixed_centre"] = [0.0, 0.0, self.points.height]
+        elif not is_plane(self.space):
+            spec["home"]["X"][2] = self.points.height
         found = _closed(spec)
         ends = list(itertools.accumulate((len(leg.joints) for leg in found.legs), initial=0))
-        home["X"] = [round(x, 12) for x in found.home.X]
-        home["q"] = [[round(x, 9) for x in found.home.q[a:b]] for a, b in itertools.pairwise(ends)]
+        X = [round(x, 12) for x in found.home.X]
+        q = [[round(x, 9) for x in found.home.q[a:b]] for a, b in itertools.pairwise(ends)]
+        spec["home"] = {"X": X, "q": q}
         return spec, found
 
     def _free(self, shapes: tuple[Shape, ...]) -> Manipulator:
         """The mechanism without any actuator."""
         tilt, mirror = next(_options(self.space))
         none = tuple((False,) * len(shape.extra) for shape in shapes)
-        return self._made(shapes, none, self._legs(shapes, tilt, mirror=mirror))[1]
+        return self._made(shapes, none, tilt, mirror=mirror)[1]
+
+    def _spec(
+        self, shapes: tuple[Shape, ...], actuators: tuple[Flags, ...], legs: list[Placed]
+    ) -> Plain:
+        plane, names = is_plane(self.space), leg_names(self.groups)
+        types = {
+            name: _leg_type(group, shape, actuated, plane=plane)
+            for name, group, shape, actuated in zip(
+                names, self.groups, shapes, actuators, strict=True
+            )
+        }
+        by_name = dict(zip(names, shapes, strict=True))
+        extra = [
+            value
+            for leg in legs
+            for value, is_extra in zip(leg.q, by_name[leg.table["type"]].extra, strict=True)
+            if is_extra
+        ]
+        spec: Plain = {
+            "name": self.name,
+            "title": self.title,
+            "space": str(self.space),
+            "gravity": [0.0, -9.81] if plane else [0.0, 0.0, -9.81],
+        }
+        if self.space is Space.SPHERICAL:
+            spec["fixed_centre"] = [0.0, 0.0, HEIGHT]
+        spec["platform"] = _platform(self.space)
+        spec["leg_types"] = types
+        spec["legs"] = [leg.table for leg in legs]
+        spec["home"] = {"X": HOME_X[self.space] + extra, "q": [list(leg.q) for leg in legs]}
+        return spec
 
 
 def _closed(spec: Plain) -> Manipulator:
     """The legs closed near their usual bend, or as they can be."""
-    home = _table(spec["home"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SpecWarning)
         warnings.simplefilter("ignore", SpecNote)
         try:
             return from_mapping(spec, SOURCE)
         except SpecError:
-            return from_mapping({**spec, "home": {"X": home["X"]}}, SOURCE)
-
-
-def _set_height(spec: Plain, space: Space, height: float) -> None:
-    """The platform where it stands at home."""
-    X = _table(spec["home"])["X"]
-    assert isinstance(X, list)
-    if space is Space.SPHERICAL:
-        spec["fixed_centre"] = [0.0, 0.0, height]
-    elif not is_plane(space):
-        X[2] = height
-
-
-def _table(value: object) -> Plain:
-    assert isinstance(value, dict)
-    return value
+            return from_mapping({**spec, "home": {"X": spec["home"]["X"]}}, SOURCE)
 
 
 def _read(spec: Plain) -> Manipulator:
@@ -214,50 +224,10 @@ def _check_letters(groups: tuple[LegGroup, ...], space: Space) -> None:
         wrong = [kind.letter for kind in kinds if not kind.in_plane]
         if wrong:
             flat = " and ".join(kind.letter for kind in WrittenJoint if kind.in_plane)
-            raise SpecError(
-                SOURCE,
-                "",
+            raise fault(
                 f"joint {wrong[0]!r} of {group.plain} leaves the plane",
                 f"joints {flat} in the space '{space}', or another --space",
             )
-
-
-def _spec(
-    name: str,
-    title: str,
-    groups: tuple[LegGroup, ...],
-    shapes: tuple[Shape, ...],
-    actuators: tuple[Flags, ...],
-    legs: list[Placed],
-    space: Space,
-) -> Plain:
-    plane = is_plane(space)
-    types = {
-        type_name: _leg_type(group, shape, actuated, plane=plane)
-        for type_name, group, shape, actuated in zip(
-            leg_names(groups), groups, shapes, actuators, strict=True
-        )
-    }
-    spread = [shape for g, shape in zip(groups, shapes, strict=True) for _ in range(g.count)]
-    extra = [
-        value
-        for shape, leg in zip(spread, legs, strict=True)
-        for value, is_extra in zip(leg.q, shape.extra, strict=True)
-        if is_extra
-    ]
-    spec: Plain = {
-        "name": name,
-        "title": title,
-        "space": str(space),
-        "gravity": [0.0, -9.81] if plane else [0.0, 0.0, -9.81],
-    }
-    if space is Space.SPHERICAL:
-        spec["fixed_centre"] = [0.0, 0.0, HEIGHT]
-    spec["platform"] = _platform(space)
-    spec["leg_types"] = types
-    spec["legs"] = [leg.table for leg in legs]
-    spec["home"] = {"X": HOME_X[space] + extra, "q": [list(leg.q) for leg in legs]}
-    return spec
 
 
 def _platform(space: Space) -> Plain:
@@ -277,7 +247,7 @@ def _leg_type(group: LegGroup, shape: Shape, actuated: Flags, *, plane: bool) ->
     joints, at = [], 0
     for written in shape.chain.joints:
         size = len(written.letter.kind.parts)
-        fields = dict(in_space(written.fields, plane))
+        fields = {**in_space(written.fields, plane)}
         link = fields.pop("link")
         for mark, values in (("actuated", actuated), ("extra", shape.extra)):
             own = list(values[at : at + size])

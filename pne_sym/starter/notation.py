@@ -85,7 +85,7 @@ def parse_legs(text: str) -> tuple[LegGroup, ...]:
         SpecError: not in the notation, or more than a specification may have.
     """
     if len(text) > 1000:
-        raise _fault(f"{len(text)} characters", _GRAMMAR)
+        raise fault(f"{len(text)} characters", _GRAMMAR)
     groups: list[LegGroup] = []
     for part in text.split("+"):
         group = _group(part.strip())
@@ -95,7 +95,7 @@ def parse_legs(text: str) -> tuple[LegGroup, ...]:
             groups.append(group)
     total = sum(group.count for group in groups)
     if not 1 <= total <= MAX_LEGS:
-        raise _fault(f"{total} legs", f"1 to {MAX_LEGS} legs")
+        raise fault(f"{total} legs", f"1 to {MAX_LEGS} legs")
     return tuple(groups)
 
 
@@ -113,10 +113,10 @@ def is_guide(group: LegGroup, groups: tuple[LegGroup, ...]) -> bool:
 def _group(part: str) -> LegGroup:
     match = _GROUP.fullmatch(part)
     if not match:
-        raise _fault(f"value {show(part)}", _GRAMMAR)
+        raise fault(f"value {show(part)}", _GRAMMAR)
     count = int(match[1] or 1)
     if count < 1:
-        raise _fault(f"{count} legs {show(match[2])}", "one leg or more")
+        raise fault(f"{count} legs {show(match[2])}", "one leg or more")
     written = [
         (kind.upper(), actuated, extra) for actuated, kind, extra in _LETTER.findall(match[2])
     ]
@@ -129,31 +129,32 @@ def _leg(part: str, count: int, written: list[tuple[str, str, str]]) -> LegGroup
     for letter, *_ in written:
         if letter not in known and letter not in PLATFORM:
             words = ", ".join(f"{kind} {kind.word}" for kind in known.values())
-            raise _fault(f"joint {letter!r} in {show(part)}", words)
+            raise fault(f"joint {letter!r} in {show(part)}", words)
     *chain, (last, *marks) = written
     if not chain:
-        raise _fault(f"leg {show(part)}", "at least one joint before the platform joint")
+        raise fault(f"leg {show(part)}", "at least one joint before the platform joint")
     if last not in PLATFORM:
-        raise _fault(
+        raise fault(
             f"platform joint {last!r} in {show(part)}",
             f"a leg that ends in {_ENDS} (the last letter is the platform joint)",
         )
     if any(marks):
-        raise _fault(f"a mark at the platform joint of {show(part)}", "marks of other joints only")
+        raise fault(f"a mark at the platform joint of {show(part)}", "marks of other joints only")
     for letter, *_ in chain:
         if letter not in known:
-            raise _fault(f"joint {letter!r} in {show(part)}", "only as platform joint, at the end")
+            raise fault(f"joint {letter!r} in {show(part)}", "only as platform joint, at the end")
     joints = tuple(
         Letter(known[kind], bool(actuated), bool(extra)) for kind, actuated, extra in chain
     )
     group = LegGroup(count, joints, PLATFORM[last])
     if group.dofs > MOST_DOFS:
-        raise _fault(
+        raise fault(
             f"{group.dofs} degrees of freedom in {show(part)}",
             f"at most {MOST_DOFS} before the platform joint; longer chains are written by hand",
         )
     return group
 
 
-def _fault(problem: str, expected: str) -> SpecError:
+def fault(problem: str, expected: str) -> SpecError:
+    """What is wrong with the architecture that is asked for."""
     return SpecError(SOURCE, "", problem, expected)

@@ -7,17 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import rotation_about
 from pne_sym.model.legs import is_plane
 from pne_sym.model.manipulator import Space
 from pne_sym.model.rotation import rotation_from_rpy
-from pne_sym.starter.chain import scaled
+from pne_sym.starter.chain import Plain, scaled
 from pne_sym.starter.choose import Shape, reshaped
-from pne_sym.starter.notation import SOURCE, LegGroup, is_guide
+from pne_sym.starter.notation import LegGroup, fault, is_guide
 from pne_sym.starter.points import Points
-
-Plain = dict[str, object]
 
 HEIGHT = 0.75
 RADIUS = {True: 0.18, False: 0.3}
@@ -101,9 +98,7 @@ def stretch(
         start += group.count
         length = float(np.linalg.norm(shape.tip))
         if shape.concentric or length < _UPRIGHT or not own.all():
-            raise SpecError(
-                SOURCE,
-                "",
+            raise fault(
                 f"{group.plain} legs between points that do not let them extend",
                 "base and platform points apart at home, and legs that reach from one to the other",
             )
@@ -122,11 +117,7 @@ def _between(shape: Shape, points: Points, index: int, space: Space) -> Plain:
     rpy = (0.0, 0.0, azimuth + 180.0) if plane else (-90.0, -90.0, azimuth)
     frame = np.array(rotation_from_rpy(rpy, degrees=True))
     frame = _turned(frame @ shape.tip, way) @ frame
-    size = 2 if plane else 3
-    leg: Plain = {"base_point": base.tolist()[:size], "base_frame": _rows(frame)}
-    if space is not Space.POINT:
-        leg["platform_point"] = point.tolist()[:size]
-    return leg | _ended(shape, frame)
+    return _written(space, base, point, _rows(frame)) | _ended(shape, frame)
 
 
 def _turned(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -180,11 +171,12 @@ def _placed(shape: Shape, space: Space, azimuth: float, tilt: float) -> Plain:
     origin = np.array([0.0, 0.0, 0.0 if plane else HEIGHT])
     point = np.round(point, DIGITS)
     base = np.round(origin + point - frame @ shape.tip, DIGITS)
-    size = 2 if plane else 3
-    leg: Plain = {
-        "base_point": (base + 0.0).tolist()[:size],
-        "base_frame": {"rpy_deg": list(rpy)},
-    }
-    if space is not Space.POINT:
-        leg["platform_point"] = (point + 0.0).tolist()[:size]
+    leg = _written(space, base + 0.0, point + 0.0, {"rpy_deg": list(rpy)})
     return leg | _ended(shape, frame)
+
+
+def _written(space: Space, base: np.ndarray, point: np.ndarray, frame: object) -> Plain:
+    """Where a leg stands, with the components that the space has."""
+    size = 2 if is_plane(space) else 3
+    leg: Plain = {"base_point": base.tolist()[:size], "base_frame": frame}
+    return leg | ({} if space is Space.POINT else {"platform_point": point.tolist()[:size]})

@@ -5,14 +5,8 @@ from __future__ import annotations
 import textwrap
 
 from pne_sym.model.manipulator import Space
+from pne_sym.starter.chain import Plain
 
-ADJECTIVES: dict[Space, str] = {
-    Space.POINT: "planar-point",
-    Space.PLANAR: "planar",
-    Space.SPATIAL: "spatial",
-    Space.TRANSLATIONAL: "translational",
-    Space.SPHERICAL: "spherical",
-}
 SPACES: dict[Space, str] = {
     Space.POINT: "X = x, y of the output point; V = their rates",
     Space.PLANAR: "X = x, y, phi; V = their rates",
@@ -49,7 +43,7 @@ HOME = (
 )
 
 
-def joint_comment(text: str, fields: dict[str, object]) -> list[str]:
+def joint_comment(text: str, fields: Plain) -> list[str]:
     """Comment lines of a joint."""
     if fields.get("actuated"):
         text += " Actuated."

@@ -6,8 +6,9 @@ import os
 import tempfile
 import textwrap
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from pne_sym.mechanics.mobility import mobility
 from pne_sym.model.entry import Entry, nearest
@@ -17,13 +18,23 @@ from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.model.names import read_name
 from pne_sym.model.reader import from_mapping, from_text
 from pne_sym.starter.actuators import check_actuators
+from pne_sym.starter.chain import Plain
 from pne_sym.starter.layout import Plan, default_space, make_plan
 from pne_sym.starter.notation import LegGroup, parse_legs
 from pne_sym.starter.place import leg_names
 from pne_sym.starter.points import Geometry
-from pne_sym.starter.words import ADJECTIVES, HEAD, HOME, LEGS, SPACES, joint_comment
+from pne_sym.starter.words import HEAD, HOME, LEGS, SPACES, joint_comment
 
 SUFFIX = ".toml"
+_UNITS = {
+    "mass": "kg",
+    "centre_of_mass": "m",
+    "inertia": "kg m^2",
+    "offset": "m",
+    "pitch": "m/rad",
+    "base_point": "m",
+    "platform_point": "m",
+}
 
 
 def write_starter(
@@ -54,10 +65,12 @@ def write_starter(
     name = read_name(Entry(where, "", path.stem))
     if (path.exists() or path.is_symlink()) and not force:
         raise SpecError(where, "", "the file exists", "another name, or --force to replace it")
+    from pne_sym.mechanics.derive import derive  # noqa: PLC0415 - brings SymPy
+
     text = starter_text(name, legs, space, geometry)
     manipulator = from_text(text, SUFFIX, where)
     told = check_actuators(manipulator, parse_legs(legs))
-    _check_derivable(manipulator)
+    derive(manipulator)  # what the method does not cover is refused now, not at generation
     try:
         _write(path, text, replace=force)
     except FileExistsError:
@@ -80,17 +93,11 @@ def starter_text(
     groups = parse_legs(legs)
     chosen = _space(space) if space is not None else default_space(groups)
     architecture = "+".join(f"{group.count}-{group.plain}" for group in groups)
-    title = f"{ADJECTIVES[chosen]} {architecture} manipulator"
+    adjective = "planar-point" if chosen is Space.POINT else str(chosen)
+    title = f"{adjective} {architecture} manipulator"
     points = geometry.points(groups, chosen) if geometry else None
     plan = make_plan(name, title[:1].upper() + title[1:120], groups, chosen, points)
     return "\n".join(_lines(plan, chosen)) + "\n"
-
-
-def _check_derivable(manipulator: Manipulator) -> None:
-    """Refuse now, not at generation, what the method does not cover."""
-    from pne_sym.mechanics.derive import derive  # noqa: PLC0415 - brings SymPy
-
-    derive(manipulator)
 
 
 def _space(text: str) -> Space:
@@ -138,58 +145,44 @@ def _lines(plan: Plan, space: Space) -> Iterator[str]:
         yield from _leg_type(name, group, plan)
     yield ""
     yield from LEGS[is_plane(space)]
-    for leg in _tables(spec["legs"]):
+    for leg in spec["legs"]:
         yield "[[legs]]"
-        yield from _fields(leg)
+        yield from _fields(leg, _UNITS)
         yield ""
     yield "[home]"
     yield from HOME
-    home = _table(spec["home"])
-    yield f"X = {_value(home['X'])}"
+    yield f"X = {_value(spec['home']['X'])}"
     yield "q = ["
-    for row in _list(home["q"]):
+    for row in spec["home"]["q"]:
         yield f"    {_value(row)},"
     yield "]"
 
 
-def _platform(body: object, space: Space) -> Iterator[str]:
+def _platform(fields: Plain, space: Space) -> Iterator[str]:
     yield "[platform]"
     if space is Space.POINT:
         yield "# A payload at the output point."
-    fields = _table(body)
-    yield f"mass = {_value(fields['mass'])}  # kg"
-    if "centre_of_mass" in fields:
-        yield f"centre_of_mass = {_value(fields['centre_of_mass'])}  # m, platform frame"
-    if "inertia" in fields:
-        meaning = "izz" if is_plane(space) else "ixx, iyy, izz"
-        yield f"inertia = {_value(fields['inertia'])}  # kg m^2: {meaning}"
+    moments = "izz" if is_plane(space) else "ixx, iyy, izz"
+    own = {"centre_of_mass": "m, platform frame", "inertia": f"kg m^2: {moments}"}
+    yield from _fields(fields, _UNITS | own)
 
 
 def _leg_type(name: str, group: LegGroup, plan: Plan) -> Iterator[str]:
-    fields = _table(_table(plan.spec["leg_types"])[name])
+    fields = plan.spec["leg_types"][name]
     shape = plan.shapes[plan.groups.index(group)]
     count = f"{group.count} leg{'s' if group.count > 1 else ''}"
     yield f"# {group.plain}, from the base to the platform joint: shared by {count}."
     yield f"[leg_types.{name}]"
     yield f"platform_joint = {_value(fields['platform_joint'])}"
-    for written, joint in zip(shape.chain.joints, _tables(fields["joints"]), strict=True):
+    for written, joint in zip(shape.chain.joints, fields["joints"], strict=True):
         yield ""
         yield f"[[leg_types.{name}.joints]]"
         yield from joint_comment(written.comment, joint)
-        yield from _fields(joint)
+        yield from _fields(joint, _UNITS)
 
 
-def _fields(table: dict[str, object]) -> Iterator[str]:
+def _fields(table: Plain, units: Mapping[str, str]) -> Iterator[str]:
     """Fields one a line; those of inner tables dotted."""
-    units = {
-        "mass": "kg",
-        "centre_of_mass": "m",
-        "inertia": "kg m^2",
-        "offset": "m",
-        "pitch": "m/rad",
-        "base_point": "m",
-        "platform_point": "m",
-    }
     for name, value in table.items():
         if isinstance(value, dict) and name in ("link", "platform_joint"):
             inner = {f"{name}.{key}": item for key, item in value.items()}
@@ -200,7 +193,7 @@ def _fields(table: dict[str, object]) -> Iterator[str]:
             yield f"{key} = {_value(item)}" + (f"  # {unit}" if unit else "")
 
 
-def _value(value: object) -> str:
+def _value(value: Any) -> str:
     """A value in TOML, on one line; strings here are of letters the writer chose itself."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -210,18 +203,4 @@ def _value(value: object) -> str:
         return f'"{value}"'
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key} = {_value(item)}" for key, item in value.items()) + " }"
-    return "[" + ", ".join(_value(item) for item in _list(value)) + "]"
-
-
-def _table(value: object) -> dict[str, object]:
-    assert isinstance(value, dict)
-    return value
-
-
-def _list(value: object) -> list[object]:
-    assert isinstance(value, list)
-    return value
-
-
-def _tables(value: object) -> list[dict[str, object]]:
-    return [_table(item) for item in _list(value)]
+    return "[" + ", ".join(_value(item) for item in value) + "]"

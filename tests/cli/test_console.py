@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from pne_sym.cli.console import Report, print_error, print_warning
+from pne_sym.cli.console import Report, print_message
 
 
-@pytest.mark.parametrize("print_message", [print_error, print_warning])
-def test_control_characters_are_escaped(print_message, capsys: pytest.CaptureFixture[str]) -> None:
-    print_message("a\x1b[31mb\x07\x9b[tab\t")
+@pytest.mark.parametrize("kind", ["error: ", "warning: "])
+def test_control_characters_are_escaped(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    print_message(kind, "a\x1b[31mb\x07\x9b[tab\t")
     assert capsys.readouterr().err.split(": ", 2)[2] == "a\\x1b[31mb\\x07\\x9b[tab\t\n"
 
 

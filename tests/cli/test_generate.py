@@ -172,9 +172,10 @@ def test_progress_names_the_model_at_work(
     monkeypatch.setattr("pne_sym.generation.compile_many", compile_many)
     monkeypatch.setattr(Step, "working_on", lambda self, text: shown.append(text))
     names = ["sixbar", "delta", "stewart"]
-    models = [pne_sym.load(name) for name in names]
-    arguments = (models, tmp_path) if run is _generate else (names, models, tmp_path)
-    run(*arguments, jobs=1, report=Report(quiet=True), targets=("numpy", "c"))
+    if run is _generate:
+        run(names, tmp_path, "numpy,c", jobs=1, quiet=True)
+    else:
+        run(names, tmp_path, ("numpy", "c"), jobs=1, report=Report(quiet=True))
     assert at_work == [(name, name) for name in names]
 
 

@@ -10,7 +10,8 @@ from pne_sym.drawing.labels import BALLOON, Page, extent, label_places
 from pne_sym.drawing.order import overlap, painted
 from pne_sym.drawing.scene import Scene, Slide, Turn, scene_of
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc, hull, rounded
-from pne_sym.drawing.solids import Paint, ball, box, cylinder, prism
+from pne_sym.drawing.solids import ball, box, cylinder, prism
+from pne_sym.drawing.style import Paint
 from pne_sym.drawing.view import view_from
 from pne_sym.model.kinematics import pose_at
 from tests.sampling import entries

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from pne_sym.review import effect, runner, values
+from pne_sym.review import runner, values
 from pne_sym.review.execution import Answer, _parsed, execute
 from pne_sym.review.sandbox import Isolation
 
@@ -44,5 +44,4 @@ def _executed(
 
 @pytest.fixture(autouse=True)
 def own_text_in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    for user in (values, effect):
-        monkeypatch.setattr(user, "execute", _executed)
+    monkeypatch.setattr(values, "execute", _executed)

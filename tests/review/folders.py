@@ -13,9 +13,8 @@ from pne_sym.backends.emission import emit
 from pne_sym.cli.app import app
 from pne_sym.review.compare import compare
 from pne_sym.review.difference import Comparison
-from pne_sym.review.model import Model
+from pne_sym.review.model import Model, version_of
 from pne_sym.review.sources import find_source
-from pne_sym.review.versions import version_of
 from tests.models import bundle, catalogue
 
 Edit = Callable[[str], str]

@@ -10,7 +10,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.program.evaluate import Status, evaluate, prepare
 from pne_sym.program.interpret import REST, Interpreter
 from pne_sym.program.iteration import close_loops
-from pne_sym.review.named import Situation
+from pne_sym.review.evaluation import Situation
 from pne_sym.review.samples import length_of, random_parameters
 
 _ATTEMPTS = 40

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pne_sym.review import versions
+from pne_sym.review import model
 from pne_sym.review.diff_text import Section
 from pne_sym.review.markdown import LIMIT, Part, comment, escaped
 from pne_sym.review.model import Model
@@ -59,7 +59,7 @@ def test_an_internal_error_of_one_model_does_not_stop_the_others(
 
     before, after = pairs
     (after / "planar_3rpr/planar_3rpr.md").write_text("other")
-    monkeypatch.setattr(versions, "version_of", broken)
+    monkeypatch.setattr(model, "version_of", broken)
     done = diff(before, after)
     assert done.exit_code == 1
     assert "planar_3rpr: cannot be compared: internal error: ZeroDivisionError" in done.output

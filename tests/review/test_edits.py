@@ -356,6 +356,5 @@ def test_paths_after_are_told_as_they_are_before() -> None:
     assert found.canonical("legs[1].joints[2].link.mass") == "legs[1].joints[1].link.mass"
     assert found.canonical("legs[1].joints[1].link.mass") == "new legs[1].joints[1].link.mass"
     assert found.canonical("platform.mass") == "platform.mass"
-    assert found.joint(0, 2) == (0, 1)
-    assert found.joint(0, 1) is None
+    assert found.joints[0] == {0: 0, 2: 1}
     assert found.types == {"t": "t"}

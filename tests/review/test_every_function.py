@@ -81,7 +81,7 @@ def test_the_driver_gives_numpys_values(name: str) -> None:
     answers, faults = both.c_answers()
     assert faults == []
     assert answers is not None
-    assert np.array_equal(answers[0].sizes, answers[1].sizes)
+    assert np.array_equal(answers[0].constants["sizes"], answers[1].constants["sizes"])
     checked = 0
     for key, outputs in answers[0].calls[0].items():
         if key == ("prepare", (), "single"):

@@ -24,9 +24,8 @@ from pne_sym.review.compare import compare
 from pne_sym.review.diff_text import as_text, sections, verdict
 from pne_sym.review.difference import Comparison, Verdict
 from pne_sym.review.markdown import as_markdown
-from pne_sym.review.model import Model, from_bundle
+from pne_sym.review.model import Model, from_bundle, version_of
 from pne_sym.review.sources import Source
-from pne_sym.review.versions import version_of
 from tests.models import bundle, catalogue
 from tests.review.versions import change, with_rhs
 from tests.whole.test_coupling import both
