@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import describe, equation_titles
+from pne_sym.backends.describe import equation_titles
 from pne_sym.mechanics.mobility import motions_at_home
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
@@ -126,15 +126,15 @@ class _Model:
 
     def solves(self) -> Iterator[str]:
         """Public functions without a solution by structure, at home, or at poses around it."""
-        d = describe(self.bundle)
-        failed = self._unsolved(d.sizes["NU"])
-        if d.is_underactuated:
+        c = self.bundle.coordinates
+        failed = self._unsolved(c.sizes["NU"])
+        if not c.actuation.is_determined:
             never = [name for name, states in failed.items() if states.all()]
             yield f"{_listed(never)}: NaN at every state: {_UNDERDRIVEN}"
             failed = {name: states for name, states in failed.items() if name not in never}
         reasons: dict[str, list[str]] = {}
         for name in failed:
-            reasons.setdefault(_singular(name, constrained=d.is_constrained), []).append(name)
+            reasons.setdefault(_singular(name, constrained=c.sizes["NC"] > 0), []).append(name)
         for reason, names in reasons.items():
             yield from self._told(names, np.any([failed[n] for n in names], axis=0), reason)
 

@@ -71,7 +71,7 @@ SINGLE = {
 """Calls for one state."""
 _BIG = ("least_norm", "resolve", "null_basis", "singular_values")
 _BOUNDED = ("nearest_within", "factors_of_some")
-PARTS = ("same", "entry", "split", "take", "extend")
+PARTS = ("same", "entry", "split", "take")
 """Operations whose results may be parts of the operand."""
 OPERATIONS = frozenset((*ENTRIES, *LANES, *SINGLE, *PARTS, "search"))
 WITHOUT = ("weights", "length")

@@ -152,11 +152,10 @@ class Steps:
         if step.operation not in PARTS:
             return None
         (value,), numbers, first = step.operands, step.numbers, (*step.numbers, 0)[0]
-        whole = step.targets[0].shape == value.shape
         row = times(*self.arrays.sizes.names(value)[1:])
         if step.operation == "split":
             places = [0, first]
-        elif step.operation in ("same", "entry") or (step.operation == "extend" and whole):
+        elif step.operation in ("same", "entry"):
             places = [first if step.operation == "entry" else 0]
         elif step.operation == "take" and numbers == (*range(first, first + len(numbers)),) != ():
             places = [first]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField, Rule
+from pne_sym.derivation import Coordinates, Derivation, ParameterField, Rule
 from pne_sym.model.manipulator import Manipulator
 
 
@@ -58,7 +58,6 @@ class Described:
         coordinates: names and order.
         pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
         has_quaternion, is_constrained: features.
-        legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
         moves_base: the base moves; functions take its motion.
     """
@@ -72,8 +71,6 @@ class Described:
     rate_text: str
     tau_text: str
     wrench_text: str
-    legs: int
-
     is_numeric: bool
     moves_base: bool
 
@@ -91,19 +88,6 @@ class Described:
     def is_constrained(self) -> bool:
         """Whether there are multipliers."""
         return self.sizes["NC"] > 0
-
-    @property
-    def actuation(self) -> Actuation:
-        """What actuators and constraints determine."""
-        return self.coordinates.actuation
-
-    @property
-    def is_underactuated(self) -> bool:
-        """Whether rows beside those of passive extra coordinates cannot all be held.
-
-        Then no forces give any acceleration.
-        """
-        return not self.actuation.is_determined
 
     @property
     def quaternion_at(self) -> int | None:
@@ -150,7 +134,6 @@ def describe(bundle: Bundle) -> Described:
         ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
         ", ".join(_in_words(bundle.manipulator, i, j) for i, j in c.actuators),
         ", ".join(c.wrench),
-        len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
         bundle.manipulator.moving_base,
     )

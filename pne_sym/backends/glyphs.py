@@ -39,10 +39,7 @@ class Glyph:
                 sup, at = sup + r"\prime", at + 1
             elif mark in "_^":
                 script, at = _argument(latex, at + 1)
-                if mark == "_":
-                    sub += script
-                else:
-                    sup += script
+                sub, sup = (sub + script, sup) if mark == "_" else (sub, sup + script)
             else:
                 piece, at = _piece(latex, at)
                 base += piece
@@ -78,24 +75,16 @@ def braced(script: str) -> str:
 
 def _argument(latex: str, at: int) -> tuple[str, int]:
     """The argument of a script: a group, a command or one character."""
-    group = _GROUP.match(latex, at)
-    if group:
-        return group.group()[1:-1], group.end()
-    token = _TOKEN.match(latex, at)
-    if token is None:
-        raise ValueError(f"a script without argument in {latex!r}")
-    return token.group().strip(), token.end()
+    piece, end = _piece(latex, at)
+    return (piece[1:-1] if piece.startswith("{") else piece.strip()), end
 
 
 def _piece(latex: str, at: int) -> tuple[str, int]:
     """A group or a token of the base."""
-    group = _GROUP.match(latex, at)
-    if group:
-        return group.group(), group.end()
-    token = _TOKEN.match(latex, at)
-    if token is None:
-        raise ValueError(f"unbalanced braces in {latex!r}")
-    return token.group(), token.end()
+    found = _GROUP.match(latex, at) or _TOKEN.match(latex, at)
+    if found is None:
+        raise ValueError(f"unbalanced braces, or a script without argument, in {latex!r}")
+    return found.group(), found.end()
 
 
 def visible_width(latex: str) -> float:

@@ -33,11 +33,15 @@ _OPERATORS: dict[type[ast.AST], str] = {
 _FILES = tuple(f"kernels/{name}.py.jinja" for name in ("vectors", "quaternions", "bounds"))
 
 
+def texts(quaternion_at: int | None) -> list[str]:
+    """The definitions in templates/kernels, for poses with a quaternion at this place, or none."""
+    return [render(name, d={"quaternion_at": quaternion_at}) for name in _FILES]
+
+
 @cache
 def kernels(quaternion_at: int | None = None) -> list[ast.FunctionDef]:
-    """The definitions in templates/kernels, for poses with a quaternion at this place, or none."""
-    texts = (render(name, d={"quaternion_at": quaternion_at}) for name in _FILES)
-    (holder,) = ast.parse(f"class Kernels:\n{''.join(texts)}").body
+    """The same, read."""
+    (holder,) = ast.parse(f"class Kernels:\n{''.join(texts(quaternion_at))}").body
     assert isinstance(holder, ast.ClassDef)
     return [f for f in holder.body if isinstance(f, ast.FunctionDef)]
 

@@ -143,23 +143,15 @@ class LatexPrinter:
     def _symbol(self, expr: Any) -> Term:
         return Term(str(self.glyph(expr)))
 
-    def factor(self, expr: Any) -> str:
-        """An expression as a factor of a product, in brackets where needed."""
+    def factor(self, expr: Any, least: int = PRODUCT) -> str:
+        """A factor of a product, in brackets unless it binds so tightly at least."""
         terms = self.terms(expr)
-        if len(terms) == 1 and not terms[0].negative and terms[0].level >= PRODUCT:
-            return terms[0].text
-        return brackets(join_terms(terms))
-
-    def _operand(self, expr: Any, *, left: bool) -> str:
-        """An operand of a cross or scalar product."""
-        terms = self.terms(expr)
-        least = ATOM if left else PRODUCT
         if len(terms) == 1 and not terms[0].negative and terms[0].level >= least:
             return terms[0].text
         return brackets(join_terms(terms))
 
     def _between(self, a: Any, sign: str, b: Any) -> Term:
-        left, right = self._operand(a, left=True), self._operand(b, left=False)
+        left, right = self.factor(a, ATOM), self.factor(b)
         return Term(
             f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}", level=CROSS
         )

@@ -8,17 +8,53 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.python_text import WIDTH, PythonText
 from pne_sym.backends.scalar import wrap
+from pne_sym.backends.straight import Forms
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Check, Function
 from pne_sym.program.slices import columns, flat_places, slices
 
 _MATH = ("sqrt", "sin", "cos", "atan2", "least")
 _STATUSES = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
+_GOOD = {
+    "invalid": "({value} > 0.0) & ({value} < np.inf)",
+    "unreachable": "({value} >= 0.0)",
+    "singular": "(abs({value}) > {tolerance} * {scale})",
+}
+
+
+class Code(PythonText):
+    """Writes statements in a mode.
+
+    Args:
+        bundle: of the model.
+        judged: they tell why a state is impossible, not only whether.
+        indent: of the lines.
+    """
+
+    def __init__(self, bundle: Bundle, *, judged: bool = False, indent: int = 4) -> None:
+        super().__init__(bundle, indent=indent)
+        flags = {status: _STATUSES[status] if judged else "ok" for status in _STATUSES}
+        self.flags = tuple(dict.fromkeys(flags.values()))
+        self.forms = Forms(
+            prepared="",
+            entry="{vector}[{k}]",
+            legs="{vector}[{places}[leg]]",
+            field="p.{field}{at}",
+            signs='_BRANCHES["{name}"]',
+            total="np.sum(np.broadcast_to({value}, _{leg_type}))",
+            demand="{good}",
+            good={status: f"{flag} = {flag} & {_GOOD[status]}" for status, flag in flags.items()},
+            tolerance={1: "_TOLERANCE", 2: "_TOLERANCE * _TOLERANCE"},
+        )
+
+    def required(self, checks: Iterable[Check]) -> list[str]:
+        """What guards demand, each once."""
+        rows = (line.split(" = ", 1) for line in super().required(checks))
+        return [line for flag, value in rows for line in self.assign(flag, value)]
 
 
 class Places:
@@ -48,137 +84,87 @@ class FunctionText:
     Args:
         bundle: of the model.
         function: what is written.
-        places: of values of legs in the module's arrays.
+        tables: of places of values of legs in the module's arrays.
         judged: it tells why a state is impossible, not only whether.
     """
 
-    def __init__(self, bundle: Bundle, function: Function, places: Places, *, judged: bool) -> None:
-        self.bundle, self.f, self.places, self.judged = bundle, function, places, judged
-        parts = slices(function)
-        self.reads, self.entries = parts.reads, parts.entries
-        self.outside, self.inside = PythonText(bundle), PythonText(bundle, indent=8)
+    def __init__(self, bundle: Bundle, function: Function, tables: Places, *, judged: bool) -> None:
+        self.bundle, self.f, self.tables, self.judged = bundle, function, tables, judged
+        self.outside = Code(bundle, judged=judged)
+        self.inside = Code(bundle, judged=judged, indent=8)
+        reads = slices(function).reads
+        self.shared = [name for name in function.shared if name in reads]
+        self.loops = [block for block in function.blocks if block.leg_type]
 
     def text(self) -> str:
         """The function, headed by its operation counts."""
         name, counts = self.f.name, count_function(self.f, self.bundle.leg_counts)
-        body = self._inputs() + self.outside.statements(self.f.unpack)
-        body += [f"{flag} = True" for flag in self._flags()]
-        body += self._required(self.f.unpack_checks)
+        body, flags = self._prepared() + self.outside.entries(self.f), self.outside.flags
+        body += self.outside.statements(self.f.unpack)
+        body += [f"{flag} = True" for flag in flags]
+        body += self.outside.required(self.f.unpack_checks)
         body += [f'out_{array} = m.zeros("{array}")' for array in self.f.arrays]
-        loops = [block for block in self.f.blocks if block.leg_type]
         for block in self.f.blocks:
-            body += self._loop(block, loops.index(block)) if block.leg_type else self._once(block)
+            body += self._loop(block) if block.leg_type else self._once(block)
         used = " ".join(body)
         math = [f"{n} = m.{n}" for n in _MATH if f"{n}(" in used]
-        body = math + body + [f"return {self._status()}, {self._tuple(self._outputs())}"]
-        return (
-            f"# {name}: {counts.text}\n"
-            f"def _run_{name}({', '.join(('m', *self.f.inputs))}):\n"
-            + textwrap.indent("\n".join(body), "    ")
-        )
+        status = f"({', '.join(flags)})" if self.judged else "ok"
+        outputs = _tuple([f"out_{array}" for array in self.f.arrays])
+        lines = "\n".join([*math, *body, f"return {status}, {outputs}"])
+        head = f"def _run_{name}({', '.join(('m', *self.f.inputs))}):"
+        return f"# {name}: {counts.text}\n{head}\n{textwrap.indent(lines, '    ')}"
 
     def constants(self) -> list[str]:
         """The prepared values that it reads: shared ones, and those of the legs of each loop."""
-        lines = [f'"{self.f.name}": (', *self._listed(self._shared()), "    ("]
-        for block in (b for b in self.f.blocks if b.leg_type):
-            values = self._listed(self.f.per_leg.get(block.leg_type, ()), "    ")
+        lines = [f'"{self.f.name}": (', *_listed(self.shared), "    ("]
+        for block in self.loops:
+            values = _listed(self.f.per_leg.get(block.leg_type, ()), "    ")
             lines += [f"        (_{block.leg_type},", *values, "        ),"]
         return [*lines, "    ),", "),"]
 
-    def _listed(self, names: Sequence[str], indent: str = "") -> list[str]:
-        inner = "    " + indent
-        return wrap(f"{inner}({self._tuple(names)[1:-1]}),", WIDTH - 8, f"{inner}    ")
-
-    # ---- parts -------------------------------------------------------------------------------
-
-    def _shared(self) -> list[str]:
-        return [name for name in self.f.shared if name in self.reads]
-
-    def _inputs(self) -> list[str]:
-        """Names for prepared values, and for the entries of the input vectors that are read."""
-        lines = []
-        if self._shared() or any(b.leg_type for b in self.f.blocks):
-            lines.append(f'shared, legs = m.constants("{self.f.name}")')
-        lines += self.outside.names(self._shared(), "shared")
-        for vector in self.f.inputs:
-            size = self.bundle.coordinates.lengths[vector]
-            lines += [
-                f"{vector}_{k} = {vector}[{k}]"
-                for k in range(size)
-                if f"{vector}_{k}" in self.entries
-            ]
-        return lines
+    def _prepared(self) -> list[str]:
+        """Names for prepared values."""
+        is_any = self.shared or self.loops
+        lines = [f'shared, legs = m.constants("{self.f.name}")'] if is_any else []
+        return lines + self.outside.names(self.shared, "shared")
 
     def _once(self, block: Block) -> list[str]:
-        lines = self.outside.statements(block.assignments) + self._required(block.checks)
         rows = []
         for store in block.stores:
             (place,) = flat_places(store, self._columns(store.array))
-            text = self.outside.assign(f"out_{store.array}[{place}]", self._of(store.value))
+            text = self.outside.assign(f"out_{store.array}[{place}]", self.outside.of(store.value))
             rows.append((store.equation, text))
-        return lines + self.outside.headed(rows)
+        return self.outside.block(block) + self.outside.headed(rows)
 
-    def _loop(self, block: Block, number: int) -> list[str]:
+    def _loop(self, block: Block) -> list[str]:
         """Statements of the legs of a type."""
         leg, text = block.leg_type, self.inside
-        constants = list(self.f.per_leg.get(leg, ()))
-        lines = text.names(constants, "k")
-        for entry in self.f.leg_inputs.get(leg, ()):
-            lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
-        lines += text.statements(block.assignments) + self._required(block.checks)
+        lines = text.names(list(self.f.per_leg.get(leg, ())), "k")
+        lines += text.leg_inputs(self.f, leg)
+        lines += text.statements(block.assignments) + text.required(block.checks)
         rows = []
         for s in block.sums:
-            rows.append((s.equation, text.assign(str(s.target), self._of(s.expr), "+=")))
+            rows.append((s.equation, text.assign(str(s.target), text.of(s.expr), "+=")))
         for store in block.stores:
             table = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
-            target = f"out_{store.array}[{self.places.named(store.array, leg, table)}[leg]]"
-            rows.append((store.equation, text.assign(target, self._of(store.value))))
+            target = f"out_{store.array}[{self.tables.named(store.array, leg, table)}[leg]]"
+            rows.append((store.equation, text.assign(target, text.of(store.value))))
         lines += text.headed(rows)
         sums = [str(s.target) for s in block.sums]
         return [
             *self.outside.names(sums, f"[0.0] * {len(sums)}"),
-            f"for leg, k in legs[{number}]:",
+            f"for leg, k in legs[{self.loops.index(block)}]:",
             *textwrap.indent("\n".join(lines), "    ").split("\n"),
         ]
 
-    # ---- guards ------------------------------------------------------------------------------
-
-    def _flags(self) -> list[str]:
-        return list(_STATUSES.values()) if self.judged else ["ok"]
-
-    def _status(self) -> str:
-        return f"({', '.join(self._flags())})" if self.judged else "ok"
-
-    def _required(self, checks: Iterable[Check]) -> list[str]:
-        """What guards demand."""
-        demands: dict[str, list[str]] = {}
-        for check in checks:
-            flag = _STATUSES[check.status] if self.judged else "ok"
-            demands.setdefault(flag, []).append(self._demand(check))
-        lines = []
-        for flag, parts in demands.items():
-            lines += self.inside.assign(flag, f"{flag} & {' & '.join(dict.fromkeys(parts))}")
-        return lines
-
-    def _demand(self, check: Check) -> str:
-        value = self._of(check.value)
-        if check.status == "unreachable":
-            return f"({value} >= 0.0)"
-        if check.status == "invalid":
-            return f"({value} > 0.0) & ({value} < np.inf)"
-        tolerance = "_TOLERANCE * _TOLERANCE" if check.power == 2 else "_TOLERANCE"
-        return f"(abs({value}) > {tolerance} * {self._of(check.scale)})"
-
-    # ---- texts -------------------------------------------------------------------------------
-
-    def _of(self, value: Any) -> str:
-        return self.outside.of(value)
-
-    def _tuple(self, values: Sequence[str]) -> str:
-        return f"({', '.join(values)}{',' if values else ''})"
-
-    def _outputs(self) -> list[str]:
-        return [f"out_{array}" for array in self.f.arrays]
-
     def _columns(self, array: str) -> int:
         return columns(self.bundle.program.shapes[array])
+
+
+def _tuple(values: Sequence[str]) -> str:
+    return f"({', '.join(values)}{',' if values else ''})"
+
+
+def _listed(names: Sequence[str], indent: str = "") -> list[str]:
+    inner = "    " + indent
+    return wrap(f"{inner}{_tuple(names)},", WIDTH - 8, f"{inner}    ")

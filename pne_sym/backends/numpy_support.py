@@ -1,14 +1,57 @@
-"""What of the written-out Python in templates/numpy a module needs."""
+"""What of the written-out Python in templates/numpy and templates/kernels a module needs."""
 
 from __future__ import annotations
 
 import ast
+import re
 import symtable
+import textwrap
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from pne_sym.backends.templating import reached
+from pne_sym.backends.kernels import texts
+from pne_sym.backends.templating import reached, render
+
+_SUPPORT = (
+    *("modes", "recording", "replay"),
+    *("operations", "linear", "bounds", "iteration", "rotations"),
+)
+_SPELLINGS = {
+    r" *(?:xp = self\.xp|a = self\.require_rotation\(a\))\n": "",  # arguments are looked at before
+    r"_constant\(xp, ((?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)": r"\1",
+    r"self\.number\(([^()]*)\)": r"\1",
+    r"\b(?:self\.)?xp\.": "np.",
+    r", \.\.\.\]": "]",
+    r"\bnp\.concat\b": "np.concatenate",
+    r"\bnp\.atan2\b": "np.arctan2",
+    r"x, _ = self\.eliminated\(": "x = _solve(",
+    r"self\.pivot\b": "_PIVOT",
+    r"self\.tiny\b": "0.0",
+    r"self\.eye\((\w+)\)": r"np.eye(len(\1))[..., None]",
+    r"self\.outer\((\w+), (\w+)\)": r"\1[:, None] * \2",
+    r"self\.bordered\((\w+)\)": r"np.pad(\1, ((0, 1), (0, 1), (0, 0)))",
+    r"self\.largest\((\w+)\)": r"np.max(abs(\1), axis=0)",
+    r"self\.product\((\w+), (\w+)\)": r'np.einsum("iks,kjs->ijs", \1, \2)',
+    r"self\.transposed\((\w+)\)": r"np.swapaxes(\1, 0, 1)",
+    r"^def (\w+)\(self, ": r"\ndef _\1(",
+    r"self\.": "_",
+}
+"""Patterns of what kernels, which are methods, write otherwise than functions, in this order."""
+
+
+@cache
+def support(quaternion_at: int | None = None) -> str:
+    """All that a module may need: NumPy's own, then kernels.
+
+    Args:
+        quaternion_at: place of the quaternion in poses, if they have one.
+    """
+    own = "\n".join(render(f"numpy/{name}.py.jinja") for name in _SUPPORT)
+    text = textwrap.dedent("".join(texts(quaternion_at)))
+    for pattern, spelling in _SPELLINGS.items():
+        text = re.sub(pattern, spelling, text, flags=re.MULTILINE)
+    return f"{own}\n{text}"
 
 
 class _Part(NamedTuple):
@@ -22,7 +65,8 @@ def needed(support: str, texts: Iterable[str]) -> str:
     """The functions, classes and constants that texts name, and those that these name.
 
     Args:
-        support: Python source of functions, classes and constants, in the order of the result.
+        support: Python source of functions, classes and constants, in the order of the result; of
+            those with one name the first counts.
         texts: Python source that uses some of them.
     """
     parts = _parts(support)
@@ -42,7 +86,8 @@ def _parts(support: str) -> dict[str, _Part]:
         assert node.end_lineno is not None
         text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
         part = _Part(text, isinstance(node, ast.Assign))
-        found |= dict.fromkeys(_made(node), part)
+        for name in _made(node):
+            found.setdefault(name, part)
     return found
 
 

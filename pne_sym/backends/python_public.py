@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import FieldView, field_views
+from pne_sym.backends.describe import describe, field_views
 from pne_sym.backends.python_text import WIDTH
 from pne_sym.backends.steps import described
-from pne_sym.derivation import AxisRelation
 from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
 from pne_sym.program.pose_operations import ORTHONORMAL
@@ -25,32 +23,15 @@ def exported(bundle: Bundle) -> tuple[str, ...]:
     return (*bundle.coordinates.sizes, *sorted((*_CONSTANTS, "Parameters", *names)))
 
 
-@dataclass(frozen=True)
-class ParametersView:
-    """What the class of the parameters says of them, and the checks of their values."""
-
-    fields: tuple[FieldView, ...]
-    defaults: tuple[str, ...]
-    relations: tuple[AxisRelation, ...]
-    has_payload: bool
-
-
-def parameters_view(bundle: Bundle) -> ParametersView:
-    """Of a bundle's parameters."""
-    fields = field_views(bundle)
-    return ParametersView(
-        fields,
-        tuple(line for f in fields for line in _default_lines(f)),
-        tuple(bundle.derivation.parameters.relations),
-        bundle.manipulator.payload is not None,
-    )
-
-
-def _default_lines(f: FieldView) -> list[str]:
-    """Lines of a parameter's default, one per leg."""
-    if not f.per_leg:
-        return [f'"{f.name}": {f.rows[0]},']
-    return [f'"{f.name}": [', *(f"    {row}," for row in f.rows), "],"]
+def module_facts(bundle: Bundle) -> dict[str, object]:
+    """What templates print of a module of NumPy arrays: names, parameters and their checks."""
+    return {
+        "d": describe(bundle),
+        "exported": exported(bundle),
+        "fields": field_views(bundle),
+        "relations": bundle.derivation.parameters.relations,
+        "has_payload": bundle.manipulator.payload is not None,
+    }
 
 
 def definition(function: PublicFunction, body: Sequence[str], *, plain: bool = False) -> str:

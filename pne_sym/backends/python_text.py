@@ -30,13 +30,11 @@ class PythonText(StraightText):
 
     def names(self, names: list[str], source: str) -> list[str]:
         """Unpack a tuple; nothing for an empty one."""
-        return unpacked(names, source, self.width)
+        return unpacked(names, source, self.width) if names else []
 
 
 def unpacked(names: list[str], source: str, width: int) -> list[str]:
-    """A tuple unpacked; nothing for an empty one."""
-    if not names:
-        return []
+    """A tuple unpacked, on several lines if that is long."""
     line = f"{', '.join(names)}{',' if len(names) == 1 else ''} = {source}"
     if len(line) <= width:
         return [line]

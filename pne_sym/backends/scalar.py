@@ -50,23 +50,11 @@ class ScalarPrinter(StrPrinter):
     def _number(self, value: float) -> str:
         return self.dialect.number.format(repr(float(value)))
 
-    def _print_Integer(self, expr: Any) -> str:
-        return self._number(int(expr))
-
     def _print_Rational(self, expr: Any) -> str:
         return self._number(int(expr.p) / int(expr.q))
 
-    def _print_Half(self, expr: Any) -> str:
-        return self._number(0.5)
-
-    def _print_One(self, expr: Any) -> str:
-        return self._number(1)
-
-    def _print_NegativeOne(self, expr: Any) -> str:
-        return self._number(-1)
-
-    def _print_Zero(self, expr: Any) -> str:
-        return self._number(0)
+    _print_Integer = _print_Half = _print_Rational
+    _print_One = _print_NegativeOne = _print_Zero = _print_Rational
 
     def _print_Float(self, expr: Any) -> str:
         return self._number(float(expr))
@@ -88,13 +76,8 @@ class ScalarPrinter(StrPrinter):
         for negative, term in self.terms(expr):
             level = PRECEDENCE["Mul" if negative else "Add"]  # a sum behind a minus needs them
             body = self.parenthesize(term, level)
-            text += (
-                f" - {body}"
-                if negative and text
-                else f"-{body}"
-                if negative
-                else (f" + {body}" if text else body)
-            )
+            sign = "-" if negative else "+" if text else ""
+            text += f" {sign} {body}" if text else f"{sign}{body}"
         return text
 
     def _print_Mul(self, expr: Any) -> str:
@@ -123,11 +106,8 @@ class ScalarPrinter(StrPrinter):
         if item.is_Symbol:
             return self._print_Symbol(item)
         own, text = _level(item), self._print(item)
-        return (
-            f"({text})"
-            if own < level or (own == level and not strict and level == PRECEDENCE["Pow"])
-            else str(text)
-        )
+        needed = own < level or (own == level and not strict and level == PRECEDENCE["Pow"])
+        return f"({text})" if needed else text
 
     def _print_Function(self, expr: Any) -> str:
         name = self.dialect.functions.get(type(expr).__name__)
@@ -135,10 +115,7 @@ class ScalarPrinter(StrPrinter):
             raise TypeError(f"no function {type(expr).__name__} in generated code")
         return f"{name}({', '.join(self._print(arg) for arg in expr.args)})"
 
-    _print_sin = _print_cos = _print_atan2 = _print_acos = _print_Function
-
-    def _print_Abs(self, expr: Any) -> str:
-        return self._print_Function(expr)
+    _print_sin = _print_cos = _print_atan2 = _print_acos = _print_Abs = _print_Function
 
     def _print_Min(self, expr: Any) -> str:
         """The least of several, two at a time."""

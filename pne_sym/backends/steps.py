@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 from collections.abc import Mapping
 
 from pne_sym.backends.straight import places
@@ -63,7 +64,8 @@ class StepText:
         several: more than one of them.
         made: behind that for each {target}, with its status {code} where it is not finite.
         known: what is finite where an {target} is a number or infinite.
-        run: {each}, the results with commas behind them, of a {function} at {inputs}.
+        run: {each} result of a {function} at {inputs}, which calls them {arrays}; {comma} where it
+            is one.
         alone: stands for inputs where there are none.
         search: {target} from {start}, of a {residual} and its {slope}, which take {given} and
             {guess} behind the pose, with commas before them; with {halving} of steps or without.
@@ -107,9 +109,16 @@ class StepText:
 
     def _step(self, step: Step) -> list[str]:
         if isinstance(step, Run):
-            each = "".join(f"{target.name}, " for target in step.targets)
-            inputs = ", ".join(self.program.functions[step.function].inputs) or self.alone
-            return [self.run.format(each=each.rstrip(), function=step.function, inputs=inputs)]
+            found = [target.name for target in step.targets]
+            function = self.program.functions[step.function]
+            text = self.run.format(
+                each=", ".join(found),
+                comma="," * (len(found) == 1),
+                function=self.called(step.function),
+                inputs=", ".join(function.inputs) or self.alone,
+                arrays=json.dumps(function.arrays),
+            )
+            return [text]
         if isinstance(step, Search):
             text = self.search.format(
                 target=step.targets[0].name,
@@ -123,17 +132,25 @@ class StepText:
             return [text]
         targets = ", ".join(target.name for target in step.targets)
         targets = targets if len(step.targets) == 1 else self.several.format(targets)
-        lines = [self.apply.format(targets=targets, value=self._applied(step))]
+        lines = [self.apply.format(targets=targets, value=self.applied(step))]
         operation = OPERATIONS[step.operation]
         code, known = int(operation.status), self.known if operation.unbounded else "{}"
         names = (known.format(target.name) for target in step.targets)
         made = (self.made.format(target=name, code=code) for name in names)
         return lines + [line for line in made if line and code]
 
-    def _applied(self, step: Apply) -> str:
+    def called(self, function: str) -> str:
+        """A function of the program where it is run."""
+        return function
+
+    def numbers(self, step: Apply) -> str:
+        """What is fixed."""
+        return places(step.numbers, self.first)
+
+    def applied(self, step: Apply) -> str:
         """An operation at its operands."""
         operands, first = [operand.name for operand in step.operands], step.targets[0]
-        numbers = places(step.numbers, self.first)
+        numbers = self.numbers(step)
         form = {**COMMON, **self.expressions}.get(step.operation, self.call)
         takes = inspect.signature(OPERATIONS[step.operation].compute).parameters
         return form.format(

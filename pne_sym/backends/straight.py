@@ -33,10 +33,10 @@ class Forms:
         prepared: the prepared value {name}.
         entry: entry {k} of {vector}.
         legs: its entries at {places}, which belong to legs.
-        field: entry {place} of the parameter {field}; leg_field: that of each of {legs} legs,
-            where it is another.
-        signs: a sign per leg, {values}.
-        total: the sum of {value} over {legs} legs.
+        field: entry {place} of the parameter {field}, {at} as its subscript where it has one;
+            leg_field: that of each of {legs} legs, where it is another.
+        signs: the branch {name}, a sign per leg, {values}.
+        total: the sum of {value} over {legs} legs of a {leg_type}.
         demand: a guard against a {status}: {good} must hold.
         good: what must hold, by the status: of {value}, its {size}, {tolerance} and {scale}.
         tolerance: by the guard's power.
@@ -67,11 +67,11 @@ class StraightText:
 
     Attributes:
         comment: what begins one.
-        forms: of a language that writes functions as `body` does.
+        forms: of the language.
     """
 
     comment: ClassVar[str]
-    forms: ClassVar[Forms]
+    forms: Forms
 
     def __init__(self, bundle: Bundle, printer: ScalarPrinter) -> None:
         self.bundle, self.printer = bundle, printer
@@ -108,13 +108,9 @@ class StraightText:
     def body(self, function: Function) -> list[str]:
         """Statements of a function: inputs, guards, values, what is stored."""
         lines = self._inputs(function) + self.statements(function.unpack)
-        lines += self._required(function.unpack_checks)
+        lines += self.required(function.unpack_checks)
         for block in function.blocks:
-            for entry in function.leg_inputs.get(block.leg_type, ()):
-                where = places(entry.indices, self.forms.first)
-                value = self.forms.legs.format(vector=entry.vector, places=where)
-                lines += self.assign(self.of(entry.symbol), value)
-            lines += self._block(block)
+            lines += self.leg_inputs(function, block.leg_type) + self.block(block)
             lines += self._stores(block) if self.forms.store else []
         return lines
 
@@ -124,10 +120,11 @@ class StraightText:
         used = set[str]().union(*map(symbols, program.prepare)) | {n for n, _ in program.prepared}
         values = {name: self._field(field, index) for name, (field, index) in table.entries.items()}
         for name, (_, signs) in table.branches.items():
-            values[name] = self.forms.signs.format(values=", ".join(f"{s}.0" for s in signs))
+            text = ", ".join(f"{s}.0" for s in signs)
+            values[name] = self.forms.signs.format(name=name, values=text)
         given = (self.assign(self.named(name), values[name]) for name in values if name in used)
         lines = [line for parts in given for line in parts]
-        return lines + [line for block in program.prepare for line in self._block(block)]
+        return lines + [line for block in program.prepare for line in self.block(block)]
 
     def named(self, name: str) -> str:
         """The name of a value."""
@@ -138,31 +135,48 @@ class StraightText:
         form = (field.leg_type and self.forms.leg_field) or self.forms.field
         place = places(map(int, np.unravel_index(index, field.shape or (1,))), self.forms.first)
         legs = self.bundle.leg_counts.get(field.leg_type or "", 1)
-        return form.format(field=field.name, place=place[1:-1], legs=legs)
+        at = f"[{':, ' * bool(field.leg_type)}{place[1:]}" * bool(field.shape)
+        return form.format(field=field.name, place=place[1:-1], at=at, legs=legs)
 
     def _inputs(self, function: Function) -> list[str]:
         """Names for prepared values, and for the entries of the input vectors that are read."""
-        parts = slices(function)
-        read = set[str]().union(*map(symbols, function.blocks)) | parts.reads_before
+        read = slices(function).reads
         own = (n for names in (function.shared, *function.per_leg.values()) for n in names)
-        values = [(n, self.forms.prepared.format(name=self.named(n))) for n in own if n in read]
+        values = ((n, self.forms.prepared.format(name=self.named(n))) for n in own if n in read)
+        given = (self.assign(self.named(name), value) for name, value in values)
+        return [line for parts in given for line in parts] + self.entries(function)
+
+    def entries(self, function: Function) -> list[str]:
+        """Names for the entries of the input vectors that are read."""
+        read, lines = slices(function).entries, list[str]()
         for vector in function.inputs:
             for k in range(self.bundle.coordinates.lengths[vector]):
-                entry = self.forms.entry.format(vector=vector, k=k + self.forms.first)
-                values += [(name, entry)] if (name := f"{vector}_{k}") in parts.entries else []
-        given = (self.assign(self.named(name), value) for name, value in values)
-        return [line for parts in given for line in parts]
+                if (name := f"{vector}_{k}") in read:
+                    entry = self.forms.entry.format(vector=vector, k=k + self.forms.first)
+                    lines += self.assign(self.named(name), entry)
+        return lines
 
-    def _block(self, block: Block) -> list[str]:
-        lines = self.statements(block.assignments) + self._required(block.checks)
+    def leg_inputs(self, function: Function, leg_type: str) -> list[str]:
+        """Names for entries of the input vectors that belong to legs."""
+        lines = []
+        for entry in function.leg_inputs.get(leg_type, ()):
+            where = places(entry.indices, self.forms.first)
+            value = self.forms.legs.format(vector=entry.vector, places=where)
+            lines += self.assign(self.of(entry.symbol), value)
+        return lines
+
+    def block(self, block: Block) -> list[str]:
+        """Statements of a block, what they demand, sums over legs."""
+        lines = self.statements(block.assignments) + self.required(block.checks)
         rows = []
         for s in block.sums:
             legs = self.bundle.leg_counts[block.leg_type]
-            total = self.forms.total.format(value=self.of(s.expr), legs=legs)
+            facts = {"value": self.of(s.expr), "legs": legs, "leg_type": block.leg_type}
+            total = self.forms.total.format(**facts)
             rows.append((s.equation, self.assign(self.of(s.target), total)))
         return lines + self.headed(rows)
 
-    def _required(self, checks: Iterable[Check]) -> list[str]:
+    def required(self, checks: Iterable[Check]) -> list[str]:
         """What guards demand, each once."""
         found = []
         for c in checks:

@@ -86,7 +86,9 @@ class Algorithm:
         equation: str = "",
         name: str = "",
     ) -> Value:
-        """Apply an operation with one result."""
+        """Apply an operation with one result; nothing is done where an array is long enough."""
+        if operation == "extend" and operands[0].shape == tuple(numbers):
+            return operands[0]
         more = {"equation": equation, "name": name}
         (value,) = self.apply_all(operation, *operands, numbers=numbers, **more)
         return value

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pne_sym.backends.describe import describe
 from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.backends.c_agreement import assert_agree, vectors
@@ -58,12 +57,13 @@ def test_agreement(file: str, tmp_path: Path) -> None:
     manipulator = models.drawn(file)
     bundle = models.bundle(manipulator)
     _, shape, mixed, constraints, redundant, extras = STRUCTURES[file]
-    d, types = describe(bundle), bundle.derivation.leg_types
+    c, types = bundle.coordinates, bundle.derivation.leg_types
     iterated = next(t for t in types if not t.is_closed)
     assert (bundle.program.shapes[f"residual_{iterated.name}"][1], iterated.unknowns) == shape
     assert any(t.is_closed for t in types) == mixed
-    is_redundant = d.sizes["NU"] + d.sizes["NC"] > d.actuation.rank and not d.is_underactuated
-    found = (d.sizes["NC"], is_redundant, len(d.coordinates.extras))
+    unknowns = c.sizes["NU"] + c.sizes["NC"]
+    is_redundant = unknowns > c.actuation.rank and c.actuation.is_determined
+    found = (c.sizes["NC"], is_redundant, len(c.extras))
     assert found == (constraints, redundant, extras)
     library = CLibrary(bundle, tmp_path, flags=QUICK)
     given = near_home(manipulator, STATES)
@@ -155,7 +155,7 @@ def test_actuators_that_act_on_unactuated_extra_coordinates(actuators: int, tmp_
         for leg in drawn.legs
     )
     manipulator = drawn if actuators == 6 else replace(drawn, legs=legs)
-    found = describe(models.bundle(manipulator)).actuation
+    found = models.bundle(manipulator).coordinates.actuation
     assert (found.is_coupled, found.passive, found.rank) == (True, (3, 4, 5), actuators)
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)
@@ -172,7 +172,7 @@ def test_actuators_that_act_on_unactuated_extra_coordinates(actuators: int, tmp_
 def test_fewer_actuators_than_freedoms(tmp_path: Path) -> None:
     """No forces give any acceleration; everything else is as with more actuators."""
     manipulator = models.drawn("spherical_too_few_actuators")
-    assert describe(models.bundle(manipulator)).is_underactuated
+    assert not models.bundle(manipulator).coordinates.actuation.is_determined
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)
     for name in ("inverse_dynamics", "leg_reactions"):

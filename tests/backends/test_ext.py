@@ -14,12 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pne_sym.backends import registry
-from pne_sym.backends.emission import emit_target
-from pne_sym.backends.ext.header import entries
-from pne_sym.backends.ext.public import Bindings
-from pne_sym.backends.target import TargetError
-from tests import models
 from tests.backends.ext_module import assert_alike, assert_all_alike, pair
 from tests.targets.modules import functions, vectors
 
@@ -286,17 +280,3 @@ def test_nothing_is_kept_of_a_call() -> None:
     assert [sys.getrefcount(a) for pair_ in results for a in pair_] == [3] * 8
     assert [sys.getrefcount(o) for o in objects[:-1]] == before
     X.resize(6, refcheck=False)  # BufferError where a buffer is still held
-
-
-# ---- printing ----------------------------------------------------------------------------------
-
-
-def test_what_the_header_lacks_is_refused() -> None:
-    bundle = models.bundle(models.catalogue("planar_3rpr"))
-    (text,) = (t for n, t in emit_target(bundle, registry.target("c")).items() if n.endswith(".h"))
-    known = entries(text, bundle.name)
-    for name in ("M", "pose", "inverse_dynamics"):
-        rest = {n: e for n, e in known.items() if n != name}
-        with pytest.raises(TargetError, match=f"ext cannot print {name}: {bundle.name}.h has no"):
-            Bindings(bundle, rest)
-    assert [f.name for f, _ in Bindings(bundle, known).bound] == list(known)

@@ -32,7 +32,7 @@ def appended(code: str) -> Edit:
 NAMED: dict[str, tuple[str, Edit]] = {
     "the wrench's sign": (
         "planar_3rpr.py",
-        substituted(r"required - (extend_\d+)", r"required + \1"),
+        substituted(r"required - wrench", r"required + wrench"),
     ),
     "another rotation": (
         "planar_3rpr.py",
@@ -41,7 +41,7 @@ NAMED: dict[str, tuple[str, Edit]] = {
     "a tolerance": ("planar_3rpr.py", substituted(r"_TOLERANCE = \S+", "_TOLERANCE = 1e-30")),
     "the wrench's moments": (
         "planar_3rpr.py",
-        substituted(r"(def _steps_forward_dynamics\((?:.*\n)*?    extend_\d = )w", r"\g<1>1.5 * w"),
+        substituted(r"(def _steps_forward_dynamics\((?:.*\n)*?    add_1 = .* )w", r"\g<1>1.5 * w"),
     ),
     "code at import": ("planar_3rpr.py", appended("\nimport os\nos.umask(0o777)\n")),
     "M for others than the runner": (

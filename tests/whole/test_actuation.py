@@ -179,7 +179,7 @@ def test_c_agrees(name: str, tmp_path: Path) -> None:
             outputs, status = library.batch(function, *inputs)
             idle = (
                 function == "complete_acceleration"
-                and not describe(bundle(spec(name))).actuation.passive
+                and not bundle(spec(name)).coordinates.actuation.passive
             )
             assert (status == (OK if idle else SINGULAR)).all()
             assert idle or all(np.isnan(output).all() for output in outputs)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.ext.header import Entry
+from pne_sym.backends.c_public import CFunction, c_functions
 from pne_sym.backends.python_public import definition, rows, takes_rotation
 from pne_sym.backends.target import TargetError
 from pne_sym.program.public import Apply, PublicFunction, Run, Value
@@ -22,64 +20,44 @@ _EXPRESSIONS = {
 class Bindings:
     """Public functions and the functions of C that they call.
 
-    Where C has two functions for one, the name of that with more arguments is the other's and
-    what the argument is about: inverse_dynamics_weighted.
+    Where C has two functions for one, one of them takes more arguments.
     """
 
-    def __init__(self, bundle: Bundle, entries: Mapping[str, Entry]) -> None:
+    def __init__(self, bundle: Bundle) -> None:
         self.program = bundle.program
         self.name = bundle.name
-        self.public = {f.name: f for f in self.program.public if f.is_exported}
-        self.of = {name: self._variants(f, entries) for name, f in self.public.items()}
+        self.bound = c_functions(bundle)
+        self.public = [f for f in self.program.public if f.is_exported]
 
-    @property
-    def bound(self) -> list[tuple[PublicFunction, Entry]]:
-        """All functions of C that are called."""
-        return [(self.public[n], entry) for n, found in self.of.items() for entry in found]
-
-    def _variants(self, f: PublicFunction, entries: Mapping[str, Entry]) -> list[Entry]:
+    def _variants(self, f: PublicFunction) -> list[CFunction]:
         """Functions of C for a public one, those with more arguments first."""
-        names = {a.name for a in f.inputs}
-        found = [
-            entry
-            for entry in entries.values()
-            if (entry.name == f.name or entry.name.startswith(f"{f.name}_"))
-            and (entry.name == f.name or entry.name not in self.public)
-            and set(entry.inputs) <= names
-            and len(entry.outputs) == len(f.outputs)
-        ]
-        empty = all(o.value.size == 0 for o in f.outputs)
-        required = {a.name for a in f.required}
-        if not empty and not any(e.name == f.name and required <= set(e.inputs) for e in found):
-            raise TargetError(
-                f"{self.name}: the target ext cannot print {f.name}: {self.name}.h has no function "
-                "of its arguments; generate without ext"
-            )
-        return sorted(found, key=lambda entry: -len(entry.inputs))
+        found = (c for c in self.bound if c.of.name == f.name)
+        return sorted(found, key=lambda c: -len(c.inputs))
 
-    def _extra(self, f: PublicFunction, entry: Entry) -> tuple[str, ...]:
+    def _extra(self, c: CFunction) -> tuple[str, ...]:
         """Arguments that a variant takes and the function of the same name does not."""
-        (base,) = (e for e in self.of[f.name] if e.name == f.name)
-        return tuple(n for n in entry.inputs if n not in base.inputs)
+        *_, base = self._variants(c.of)
+        return tuple(n for n in _names(c) if n not in _names(base))
 
     # ---- text ------------------------------------------------------------------------------
 
     def row(self, f: PublicFunction) -> str:
         """A row of the table that Python reads: shapes of outputs, functions of C."""
         shapes = tuple(o.value.shape for o in f.outputs)
-        found = [(e.name, e.has_model, e.inputs, self._extra(f, e)) for e in self.of[f.name]]
+        variants = self._variants(f)
+        found = [(c.name, c.has_model, _names(c), self._extra(c)) for c in variants]
         return f'"{f.name}": ({shapes}, {found}),'
 
     def text(self, f: PublicFunction) -> str:
         """The function that users call."""
         body = []
-        for entry in self.of[f.name]:
-            conditions = [f"{n} is not None" for n in self._extra(f, entry)]
-            others = (a.name for a in f.optional if a.name not in entry.inputs)
+        for c in self._variants(f):
+            conditions = [f"{n} is not None" for n in self._extra(c)]
+            others = (a.name for a in f.optional if a.name not in _names(c))
             conditions += [f"{n} is None" for n in others]
             conditions += ["not nearest"] * takes_rotation(f)
-            given = ", ".join([*["p"] * entry.has_model, *entry.inputs])
-            made = f"(found := _C.{entry.name}({given})) is not None"
+            given = ", ".join([*["p"] * c.has_model, *_names(c)])
+            made = f"(found := _C.{c.name}({given})) is not None"
             body += [f"if {' and '.join([*conditions, made])}:", "    return found"]
         p = "p" if f.needs_model else "None"
         call = [f'"{f.name}", {p},', *rows(self.program, f)]
@@ -91,10 +69,10 @@ class Bindings:
 
     def _missing(self, f: PublicFunction) -> list[str]:
         """Arguments with influence that no function of C takes."""
-        known = {n for entry in self.of[f.name] for n in entry.inputs}
+        variants = self._variants(f)
+        known = {n for c in variants for n in _names(c)}
         used = {v.name for s in f.steps if isinstance(s, Apply) for v in s.operands}
-        empty = not self.of[f.name]
-        return [a.name for a in f.inputs if a.name in used - known and not empty]
+        return [a.name for a in f.inputs if variants and a.name in used - known]
 
     def is_completed(self, f: PublicFunction) -> bool:
         """Whether Python computes what C has no argument for."""
@@ -139,13 +117,18 @@ class Bindings:
 
     def _called(self, f: PublicFunction, value: Value) -> str:
         """An array of the program from the public function that gives it."""
-        for other in self.public.values():
+        for other in self.public:
             given = {a.name for a in other.inputs} <= {a.name for a in f.inputs}
             if given and [o.label for o in other.outputs] == [value.name]:
                 required = [a.name for a in other.required] + ["p"] * other.needs_model
                 optional = [f"{a.name}={a.name}" for a in other.optional]
                 return f"{other.name}({', '.join([*required, *optional])})"
         raise TargetError(f"{self.name}: the target ext has no function that gives {value.name}")
+
+
+def _names(c: CFunction) -> tuple[str, ...]:
+    """Arguments of a function of C."""
+    return tuple(i.name for i in c.inputs)
 
 
 def _maker(f: PublicFunction, value: Value) -> Apply | Run | None:

@@ -58,7 +58,7 @@ class Public(StepText):
         self.expressions = {n: text.replace("{f}", f) for n, text in EXPRESSIONS.items()}
         self.call = f"{f}{{name}}({{operands}})"
         self.made = f"status = {f}flag(status, {{code}}, {{target}});"
-        self.run = f"[{{each}} found] = {f}run_{{function}}(model, {{inputs}});{first}"
+        self.run = f"[{{each}}, found] = {f}run_{{function}}(model, {{inputs}});{first}"
         self.search = (
             f"[{{target}}, found] = {f}search_{{residual}}(model, {{start}}{{given}});{first}"
         )

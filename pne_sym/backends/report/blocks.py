@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.coupling import coupling_statements, of_rotors
-from pne_sym.backends.report.markdown import inline
+from pne_sym.backends.report.markdown import inline, matrix
 from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import Statement
 from pne_sym.derivation import Chapter, Derivation, Output
@@ -146,15 +146,10 @@ class _Grid:
         rows = sorted({row for row, _ in self.cells})
         columns = sorted({column for _, column in self.cells})
         dots = all(column.per_leg for column in columns)
-        lines = [f"{latex} =", r"\begin{bmatrix}"]
-        for k, row in enumerate(rows):
-            cells = [self.cells.get((row, column), _zero(row, column)) for column in columns]
-            if dots:
-                cells = [r"\cdots", *(part for cell in cells for part in (cell, r"\cdots"))]
-            lines += [cells[0], *(f"& {cell}" for cell in cells[1:])]
-            if k < len(rows) - 1:
-                lines[-1] += r" \\"
-        return (*lines, r"\end{bmatrix}")
+        cells = [[self.cells.get((r, c), _zero(r, c)) for c in columns] for r in rows]
+        if dots:
+            cells = [[r"\cdots", *(x for cell in row for x in (cell, r"\cdots"))] for row in cells]
+        return matrix(f"{latex} =", cells)
 
 
 def _key(per_leg: tuple[int, ...], places: tuple[tuple[int, int], ...]) -> Key:

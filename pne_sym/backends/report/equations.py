@@ -12,12 +12,12 @@ from pne_sym.backends.report.collected import Collected, collected_terms
 from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.legforce import leg_force_statements
 from pne_sym.backends.report.legs import solved
-from pne_sym.backends.report.markdown import display, inline, table, unit
+from pne_sym.backends.report.markdown import display, inline, matrix, table, unit
 from pne_sym.backends.report.names import plain_names, printer_for
 from pne_sym.backends.report.overview import unit_vectors
-from pne_sym.backends.report.view import ChapterView, EquationView, Statement, Table
+from pne_sym.backends.report.view import ChapterView, EquationView, Lines, Statement
 from pne_sym.backends.report.words import SCREWS
-from pne_sym.backends.terms import Term
+from pne_sym.backends.terms import Term, join_terms
 from pne_sym.derivation import (
     Chapter,
     Condition,
@@ -133,12 +133,7 @@ class ChapterWriter:
 
     def _rows(self, equation: Equation, printer: LatexPrinter) -> list[tuple[Term, ...]]:
         """The right-hand side and what it is equal to."""
-        rows = [printer.terms(equation.rhs)]
-        for form in equation.forms:
-            terms = printer.terms(form)
-            if terms not in rows:
-                rows.append(terms)
-        return rows
+        return list(dict.fromkeys(map(printer.terms, (equation.rhs, *equation.forms))))
 
     def _headline(self, equation: Equation, printer: LatexPrinter) -> str:
         origin = self.collected.origin.get(equation.id)
@@ -156,17 +151,13 @@ class ChapterWriter:
         part = part_of(equation, origin, form, printer)
         return f"{part} ([{origin.id}](#{origin.id}))"
 
-    def _steps(self, equation: Equation, printer: LatexPrinter) -> Table | None:
+    def _steps(self, equation: Equation, printer: LatexPrinter) -> Lines | None:
         if not equation.steps:
             return None
-        rows = [
-            (
-                step.rule,
-                inline(printer.doprint(step.before)),
-                inline(printer.doprint(step.after)),
-            )
+        rows = (
+            (step.rule, *(inline(printer.doprint(e)) for e in (step.before, step.after)))
             for step in equation.steps
-        ]
+        )
         return table(("Rule", "before", "after"), dict.fromkeys(rows))
 
     def _remarks(self, equation: Equation, printer: LatexPrinter) -> Iterator[str]:
@@ -174,9 +165,7 @@ class ChapterWriter:
         if form is not None and form.coefficients:
             terms = collected_terms(form, printer)
             if terms not in self._rows(equation, printer):
-                text = f"{printer.doprint(equation.lhs)} = " + " ".join(
-                    t.signed(first=k == 0) for k, t in enumerate(terms)
-                )
+                text = f"{printer.doprint(equation.lhs)} = {join_terms(terms)}"
                 yield f"Collected by Rules I and II: {inline(text)}."
         if (axis := self.along.get(equation.name)) is not None:
             yield (
@@ -227,12 +216,7 @@ def last_duals(derivation: Derivation) -> dict[str, ReciprocalBasis]:
 def velocity_matrix(basis: ReciprocalBasis, printer: LatexPrinter) -> tuple[str, ...]:
     """The matrix of the joints' velocities where a leg transmits moments."""
     rows = [[printer.doprint(v) for v in row] for row in (basis.vectors, *basis.rows)]
-    lines = [r",\qquad \mathcal V =", r"\begin{bmatrix}"]
-    for k, row in enumerate(rows):
-        lines += [row[0], *(f"& {cell}" for cell in row[1:])]
-        if k < len(rows) - 1:
-            lines[-1] += r" \\"
-    return (*lines, r"\end{bmatrix}")
+    return matrix(r",\qquad \mathcal V =", rows)
 
 
 def basis_condition(basis: ReciprocalBasis, printer: LatexPrinter) -> str:

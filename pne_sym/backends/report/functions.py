@@ -11,7 +11,7 @@ from pne_sym.backends.report.coupling import of_rotors
 from pne_sym.backends.report.equations import last_duals
 from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
-from pne_sym.backends.report.view import Statement, Table
+from pne_sym.backends.report.view import Lines, Statement
 from pne_sym.backends.report.words import FUNCTIONS
 from pne_sym.derivation import Coordinates, FailureStatus
 from pne_sym.program.count import count_block, count_function
@@ -210,7 +210,7 @@ def _links(ids: list[str]) -> str:
     return ", ".join(f"[{i}](#{i})" for i in dict.fromkeys(ids))
 
 
-def counts(bundle: Bundle) -> Table:
+def counts(bundle: Bundle) -> Lines:
     """Operations of every function."""
     rows = [
         _row(f"`{f.name}`", _gives(bundle, f.name), count_function(f, bundle.leg_counts))
@@ -225,7 +225,7 @@ def _gives(bundle: Bundle, name: str) -> str:
     return FUNCTIONS[name]
 
 
-def parts(bundle: Bundle) -> Table:
+def parts(bundle: Bundle) -> Lines:
     """Operations of every part of every function, for one leg where it is a leg's."""
     rows = []
     for function in bundle.program.functions.values():

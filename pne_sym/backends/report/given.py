@@ -8,7 +8,7 @@ from typing import Any
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.markdown import inline, table, unit
 from pne_sym.backends.report.names import per_leg_names
-from pne_sym.backends.report.view import Table
+from pne_sym.backends.report.view import Lines
 from pne_sym.derivation import (
     BodyAxes,
     BodyFrame,
@@ -37,11 +37,11 @@ class GivenWriter:
         self.givens = {g.symbol.name: g for g in (*derivation.givens, *derivation.pose)}
         self.per_leg = per_leg_names(derivation)
 
-    def table(self, info: LegTypeInfo | None) -> Table:
+    def table(self, info: LegTypeInfo | None) -> Lines:
         """Symbols that equations use and none defines, of a leg type or of the platform."""
         return table(_HEAD, dict.fromkeys(self._rows(info)))
 
-    def frames(self, info: LegTypeInfo | None) -> Table:
+    def frames(self, info: LegTypeInfo | None) -> Lines:
         """Axes of bodies, and how they are turned."""
         rows: list[tuple[str, ...]] = [
             (body.body, self._from(body), self._into_base(body))

@@ -9,7 +9,7 @@ from pne_sym.backends.report.given import GivenWriter
 from pne_sym.backends.report.markdown import inline, table
 from pne_sym.backends.report.mechanism import model_joints
 from pne_sym.backends.report.names import leg_indices, leg_title
-from pne_sym.backends.report.view import LegView, Table
+from pne_sym.backends.report.view import LegView, Lines
 from pne_sym.backends.report.words import METHODS
 from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField
 from pne_sym.model.manipulator import ZERO3, Joint, Leg, Vector3
@@ -161,7 +161,7 @@ def solved(info: LegTypeInfo) -> Iterator[str]:
 # ---- parameters ------------------------------------------------------------------------
 
 
-def parameter_table(derivation: Derivation) -> Table:
+def parameter_table(derivation: Derivation) -> Lines:
     """Live parameters, with their places in the full form."""
     head = ("Name", "Shape", "Path in the full form")
     return table(head, map(_parameter_row, derivation.parameters.fields))

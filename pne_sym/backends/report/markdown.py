@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from pne_sym.backends.glyphs import visible_width
-from pne_sym.backends.report.view import Table
+from pne_sym.backends.report.view import Lines
 from pne_sym.backends.terms import Term
 
 LINE = 66.0
@@ -25,10 +25,10 @@ def inline(latex: str) -> str:
     return f"$`{latex}`$"
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: int = 0) -> Table:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: int = 0) -> Lines:
     """A table; the last `numbers` columns are aligned to the right."""
     marks = ["---"] * (len(head) - numbers) + ["---:"] * numbers
-    return Table(_row(head), _row(marks), tuple(_row(row) for row in rows))
+    return tuple(map(_row, (head, marks, *rows)))
 
 
 def _row(cells: Sequence[str]) -> str:
@@ -47,6 +47,15 @@ def unit(text: str) -> str:
         if text not in ("", "-")
         else "1"
     )
+
+
+def matrix(left: str, rows: Sequence[Sequence[str]]) -> Lines:
+    """Lines of a matrix behind what it is: a cell per line."""
+    lines = [left, r"\begin{bmatrix}"]
+    for k, (first, *others) in enumerate(rows, 1):
+        lines += [first, *(f"& {cell}" for cell in others)]
+        lines[-1] += r" \\" * (k < len(rows))
+    return (*lines, r"\end{bmatrix}")
 
 
 def display(left: str, rows: Sequence[Sequence[Term]]) -> tuple[str, ...]:

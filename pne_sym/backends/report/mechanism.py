@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.markdown import table, unit
 from pne_sym.backends.report.names import leg_title
-from pne_sym.backends.report.view import Table
+from pne_sym.backends.report.view import Lines
 from pne_sym.backends.report.words import CASES, SPACES
 from pne_sym.derivation import LegTypeInfo
 from pne_sym.model.joint_kinds import WrittenJoint
@@ -27,10 +27,10 @@ _SIZES = {
 def summary(bundle: Bundle) -> str:
     """What moves, what carries it, what is actuated."""
     manipulator = bundle.manipulator
-    parts = []
-    for info in bundle.derivation.leg_types:
-        count = len(info.indices)
-        parts.append(f"{count} {leg_title(info)} leg{'s' if count > 1 else ''}")
+    parts = [
+        f"{len(info.indices)} {leg_title(info)} leg{'s' * (len(info.indices) > 1)}"
+        for info in bundle.derivation.leg_types
+    ]
     carried = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
     stars = ", a star marks a joint whose displacement is an extra coordinate"
     return (
@@ -54,22 +54,22 @@ def cases(bundle: Bundle) -> tuple[str, ...]:
     return tuple(CASES[case] for case in bundle.coordinates.cases)
 
 
-def sizes(bundle: Bundle) -> Table:
+def sizes(bundle: Bundle) -> Lines:
     """Dimensions."""
     values = bundle.coordinates.sizes
     rows = [(f"`{key}`", _SIZES[key], str(values[key])) for key in _SIZES]
     return table(("Name", "Meaning", "Value"), rows, numbers=1)
 
 
-def orders(bundle: Bundle) -> Table:
+def orders(bundle: Bundle) -> Lines:
     """What the entries of all vectors are, in which order."""
     return table(("Vector", "Entries, in this order"), _order_rows(bundle))
 
 
 def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
     c = bundle.coordinates
-    extra = _per_type(bundle, lambda joint: joint.extra, _displacement)
-    pose, rates = _listed(c.pose), _listed(c.rates)
+    extra = _per_type(bundle, lambda joint: joint.extra)
+    pose, rates = ", ".join(c.pose), ", ".join(c.rates)
     if c.extras:
         pose += f"; then the extra coordinates: {extra}"
         rates += "; then those of the extra coordinates"
@@ -80,14 +80,14 @@ def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
         _per_type(bundle, lambda joint: joint.actuated, lambda joint: joint.kind.effort_unit)
         or "none",
     )
-    yield "`q`", _per_type(bundle, lambda _: True, _displacement)
+    yield "`q`", _per_type(bundle, lambda _: True)
     if c.constraints:
         units = ", ".join(map(unit, c.constraint_units))
         yield (
             "`lambda`",
             f"coefficients of the legs' constraint wrenches, leg by leg ({units})",
         )
-    yield "`wrench`", f"{_listed(c.wrench)}: external force and moment on the platform"
+    yield "`wrench`", f"{', '.join(c.wrench)}: external force and moment on the platform"
     if any(not info.is_closed for info in bundle.derivation.leg_types):
         yield (
             "`q0`",
@@ -98,18 +98,12 @@ def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
         )
 
 
-def _listed(names: tuple[str, ...]) -> str:
-    return ", ".join(names)
-
-
-def _displacement(joint: Joint) -> str:
-    return joint.kind.unit
-
-
-def _per_type(bundle: Bundle, pick: object, measure: object) -> str:
+def _per_type(
+    bundle: Bundle,
+    pick: Callable[[Joint], bool],
+    measure: Callable[[Joint], str] = lambda joint: joint.kind.unit,
+) -> str:
     """Joints picked, by leg type: one statement for all legs of the type."""
-    assert callable(pick)
-    assert callable(measure)
     parts = []
     for info in bundle.derivation.leg_types:
         joints = model_joints(bundle.manipulator, info)

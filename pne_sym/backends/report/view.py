@@ -4,20 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-
-@dataclass(frozen=True)
-class Table:
-    """A table; every row is a finished line.
-
-    Attributes:
-        head: the heading line.
-        rule: the line under it.
-        rows: one line each.
-    """
-
-    head: str
-    rule: str
-    rows: tuple[str, ...]
+Lines = tuple[str, ...]
+"""Of a formula, or of a table: heads of columns, the rule under them, rows."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +22,9 @@ class EquationView:
 
     id: str
     headline: str
-    formula: tuple[str, ...]
-    steps: Table | None
-    remarks: tuple[str, ...]
+    formula: Lines
+    steps: Lines | None
+    remarks: Lines
 
 
 @dataclass(frozen=True)
@@ -44,7 +32,7 @@ class Statement:
     """A displayed formula that sums up, with its sentence."""
 
     text: str
-    formula: tuple[str, ...]
+    formula: Lines
 
 
 @dataclass(frozen=True)
@@ -81,7 +69,7 @@ class LegView:
 
     title: str
     legs: str
-    joints: Table
-    closing: tuple[str, ...]
-    frames: Table
-    notation: Table
+    joints: Lines
+    closing: Lines
+    frames: Lines
+    notation: Lines

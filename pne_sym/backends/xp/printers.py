@@ -70,7 +70,7 @@ class Steps(StepText):
     }
     call = "s.{name}({operands})"
     apply = "{targets} = {value}"
-    run = "{each} = _run_{function}(s, {inputs})"
+    run = "{each}{comma} = _run_{function}(s, {inputs})"
     search = (
         "{target} = s.search(_steps_{residual}, [{start}{given}], "
         "_steps_{slope}, [{start}{guess}], {halving})"
